@@ -1,0 +1,116 @@
+# The front door. Every target sets up what it needs; `make help` lists them.
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.ONESHELL:
+.DEFAULT_GOAL := help
+MAKEFLAGS += --no-print-directory --no-builtin-rules
+
+JOBS ?= 2
+BIN := .venv/bin
+export PATH := $(CURDIR)/$(BIN):$(PATH)
+export PYTHONDONTWRITEBYTECODE :=
+
+# outside data for some tests; without it they are skipped
+SHARED_DATA := $(wildcard ../shared/data)
+ifneq ($(SHARED_DATA),)
+export ENAV_TEST_DATA ?= $(abspath $(SHARED_DATA))
+endif
+
+# the extensions are rebuilt when one of these changes; Python files are used where they are
+C_FILES := $(wildcard navlib_c/include/*.h navlib_c/src/*.[ch] navlib_c/stubs/*.[ch] sim/kernels/*.[ch])
+C_FORMATTED := $(C_FILES) $(wildcard navlib_c/tests/*.cpp navlib_c/tests/*.h)
+SETUP := .venv/.setup
+
+# a moved or copied folder, or a changed Python, makes the environment stale
+ifneq ($(shell { $(BIN)/python -c '' && cat $(SETUP); } 2>/dev/null),$(CURDIR))
+.PHONY: $(SETUP)
+endif
+
+$(SETUP): setup.sh pyproject.toml CMakeLists.txt pyharness/_build/make_binding.py $(C_FILES)
+	@./setup.sh
+
+$(SETUP)-bench: $(SETUP)
+	@./setup.sh bench
+
+# $(call logged,NAME,COMMAND): the output of a command is shown only when it fails
+logged = mkdir -p build; $(2) >build/$(1).log 2>&1 </dev/null || { cat build/$(1).log; exit 1; }
+
+# name the files that are not formatted, without a diff for every place
+define clang_format_check
+wrong=$$(for file in $(C_FORMATTED); do clang-format $$file | cmp -s - $$file || echo $$file; done)
+[ -z "$$wrong" ] || { printf '%s: not formatted (make format)\n' $$wrong; exit 1; }
+endef
+
+# $(call c_tests,PRESET): build and run the C tests, show the summary
+define c_tests
+echo "building the C tests ($(1))"
+$(call logged,$(1)-configure,cmake --preset $(1))
+$(call logged,$(1)-build,cmake --build --preset $(1) --parallel $(JOBS))
+$(call logged,$(1)-tests,ctest --preset $(1) --parallel $(JOBS))
+grep -A 9 '% tests passed' build/$(1)-tests.log
+endef
+
+.PHONY: help
+help: ## list the targets
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  \1\t\2/' | expand -t 14
+
+.PHONY: setup
+setup: $(SETUP) ## system packages, .venv, this package with its extensions, pre-commit hooks
+
+.PHONY: drive
+drive: $(SETUP) ## set up and run the demonstration drive
+	@$(BIN)/enav drive --force
+
+.PHONY: test
+test: test-c style test-python ## set up and run all tests: C under ASan and UBSan, style, Python
+
+.PHONY: test-c
+test-c: $(SETUP) ## the C tests under the address and undefined-behaviour sanitizers
+	@$(call c_tests,asan)
+
+.PHONY: test-python
+test-python: $(SETUP) ## the Python tests
+	@$(BIN)/python -m pytest -n $(JOBS) --quiet
+
+.PHONY: style
+style: $(SETUP) ## formatting, ruff and the import rules, in seconds
+	@ruff check --quiet
+	@ruff format --check --quiet
+	@$(call clang_format_check)
+	@$(call logged,lint-imports,lint-imports)
+	@echo "style: ruff, clang-format, import contracts ok"
+
+.PHONY: lint
+lint: style misra ## style, MISRA rules and types
+	@mypy
+
+.PHONY: misra
+misra: $(SETUP) ## cppcheck with its MISRA addon over Navlib
+	@JOBS=$(JOBS) .ci/misra
+
+.PHONY: bench
+bench: $(SETUP)-bench ## set up and measure speed: a table, and build/bench.json
+	@mkdir -p build
+	@$(BIN)/python -m pyharness.bench
+
+.PHONY: coverage
+coverage: $(SETUP) ## coverage of Navlib by its C tests alone: build/coverage/report/index.html
+	@find build -path 'build/coverage/*.gcda' -delete 2>/dev/null || true
+	@$(call c_tests,coverage)
+	@mkdir -p build/coverage/report
+	@gcovr --root . --object-directory build/coverage --filter navlib_c/src/ --txt \
+	    --html-details build/coverage/report/index.html --json-summary build/coverage/summary.json
+	@$(BIN)/python .ci/coverage_gate.py build/coverage/summary.json
+
+.PHONY: verify
+verify: test lint coverage ## everything that is checked
+
+.PHONY: format
+format: $(SETUP) ## format C and Python
+	@clang-format -i $(C_FORMATTED)
+	@ruff check --fix --quiet || true
+	@ruff format
+
+.PHONY: clean
+clean: ## remove what was built; .venv stays
+	@rm -rf build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file nav_ace.h
+ * @brief Approximate Clearance Evaluation: bounds on the state of the settled rover at one pose.
+ *
+ * After Otsu et al., arXiv 1808.00031 (bounds without iteration), with the exact 3-D linkage in place
+ * of the published planar one and with everything measured relative to the local ground plane, so that
+ * a plain slope is not a hazard. navlib_c/DESIGN.md derives it; the guarantee is: on the terrain of the
+ * surface, with its cells as nodes of a bilinear surface, the rover settled anywhere within the stated
+ * uncertainty lies inside the bounds, if is_certified.
+ */
+#ifndef NAV_ACE_H
+#define NAV_ACE_H
+
+#include "nav_arc.h"
+#include "nav_costmap.h"
+#include "nav_vehicle.h"
+
+#define NAV_ACE_BOUNDS_FIELDS(S, A, N, M)                                                          \
+    S(double, clearance_min_m, "m", "lower bound of belly clearance along the body z axis")        \
+    S(double, wheel_drop_max_m, "m", "upper bound of the height span in a wheel's box")            \
+    S(double, tilt_max_rad, "rad", "upper bound of the tilt against gravity")                      \
+    S(double, z_min_site_m, "m", "highest the ROVER origin can be (z is down)")                    \
+    S(double, z_max_site_m, "m", "lowest the ROVER origin can be")                                 \
+    S(double, roll_min_rad, "rad", "")                                                             \
+    S(double, roll_max_rad, "rad", "")                                                             \
+    S(double, pitch_min_rad, "rad", "")                                                            \
+    S(double, pitch_max_rad, "rad", "")                                                            \
+    S(double, rocker_min_rad, "rad", "left rocker")                                                \
+    S(double, rocker_max_rad, "rad", "left rocker")                                                \
+    S(double, bogie_left_min_rad, "rad", "")                                                       \
+    S(double, bogie_left_max_rad, "rad", "")                                                       \
+    S(double, bogie_right_min_rad, "rad", "")                                                      \
+    S(double, bogie_right_max_rad, "rad", "")                                                      \
+    S(double, wheel_unknown, "1", "largest unknown share of a wheel box")                          \
+    S(double, belly_unknown, "1", "unknown share of the belly box")                                \
+    S(uint32_t, reason, "1", "nav_reason_t: NONE when every bound is within its limit")            \
+    S(uint32_t, is_certified, "1", "1 when the bounds are consistent with the growth they assume")
+NAV_RECORD(NAV_ACE_BOUNDS_FIELDS, nav_ace_bounds_t);
+
+/** What ACE reads; all of it stays unchanged. */
+typedef struct
+{
+    const nav_params_t *params;
+    const nav_vehicle_t *vehicle;
+    const nav_surface_t *surface;
+    const nav_costmap_t *costmap; /* for the local plane only */
+} nav_ace_scene_t;
+
+/**
+ * Bounds at one pose.
+ * @param position_m, yaw_rad  uncertainty: the rover is within this radius and yaw error of the pose
+ * @param is_full  true: find certified bounds even when a limit is already exceeded; false: stop there
+ */
+void nav_ace_evaluate(const nav_ace_scene_t *scene,
+                      const nav_pose2_t *pose,
+                      const nav_uncertainty_t *uncertainty,
+                      bool is_full,
+                      nav_ace_bounds_t *bounds);
+
+/** The uncertainty after a distance along a path: grown, but never beyond its bounds. */
+nav_uncertainty_t nav_ace_grow(const nav_params_t *params,
+                               const nav_uncertainty_t *uncertainty,
+                               double distance_m);
+
+#endif

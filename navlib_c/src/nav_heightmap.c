@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file nav_heightmap.c
+ * @brief The rolling heightmap and its surface.
+ */
+#include "nav_heightmap.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "nav_math.h"
+
+#define NAV_SIZE ((int32_t) NAV_HEIGHTMAP_SIZE)
+#define NAV_CELL_POINTS_MAX 65535U
+
+/* Rotation from ROVER to SITE, row by row. */
+typedef struct
+{
+    double r[3][3];
+} nav_rotation_t;
+
+/* One axis of the map: where its first global index is stored. */
+typedef struct
+{
+    double low;       /* first global index */
+    double high;      /* one past the last */
+    int32_t to_start; /* what turns a global index into a storage index, but for one size */
+} nav_axis_t;
+
+/* Known heights of three cells, one above the other. */
+typedef struct
+{
+    double z_sum_m;
+    uint32_t known_count;
+} nav_column_t;
+
+static nav_rotation_t rotation_of_pose(const nav_pose_t *pose)
+{
+    const double cr = nav_cos(pose->roll_rad);
+    const double sr = nav_sin(pose->roll_rad);
+    const double cp = nav_cos(pose->pitch_rad);
+    const double sp = nav_sin(pose->pitch_rad);
+    const double cy = nav_cos(pose->yaw_rad);
+    const double sy = nav_sin(pose->yaw_rad);
+    /* Rz(yaw) Ry(pitch) Rx(roll) */
+    const nav_rotation_t rotation = {
+        {{cy * cp, (cy * sp * sr) - (sy * cr), (cy * sp * cr) + (sy * sr)},
+         {sy * cp, (sy * sp * sr) + (cy * cr), (sy * sp * cr) - (cy * sr)},
+         {-sp, cp * sr, cp * cr}}};
+
+    return rotation;
+}
+
+static double rotated(const nav_point_t *point, const double row[3])
+{
+    return (row[0] * (double) point->x_m) + (row[1] * (double) point->y_m) +
+           (row[2] * (double) point->z_m);
+}
+
+static nav_axis_t axis_from(int32_t origin)
+{
+    const nav_axis_t axis = {(double) origin,
+                             (double) origin + (double) NAV_HEIGHTMAP_SIZE,
+                             nav_wrap_index(origin, NAV_SIZE) - origin};
+
+    return axis;
+}
+
+/* floor() of a number known to lie in the axis, as a storage index */
+static int32_t storage_index(const nav_axis_t *axis, double scaled)
+{
+    const int32_t truncated = (int32_t) scaled;
+    const int32_t global = truncated - ((scaled < (double) truncated) ? 1 : 0);
+    const int32_t stored = global + axis->to_start;
+
+    return (stored >= NAV_SIZE) ? (stored - NAV_SIZE) : stored;
+}
+
+/* @return 1 when the point was taken, 0 when the cell is full */
+static uint32_t add_to_cell(nav_height_cell_t *cell, double z_m, float time_s, uint32_t image_id)
+{
+    uint32_t taken = 1U;
+
+    if ((cell->point_count == 0U) || (cell->image_id != image_id))
+    {
+        cell->z_sum_m = z_m;
+        cell->time_s = time_s;
+        cell->image_id = image_id;
+        cell->point_count = 1U;
+    }
+    else if (cell->point_count < NAV_CELL_POINTS_MAX)
+    {
+        cell->z_sum_m += z_m;
+        cell->point_count += 1U;
+    }
+    else
+    {
+        taken = 0U;
+    }
+    return taken;
+}
+
+static void clear_rows(nav_heightmap_t *map, int32_t first_row, int32_t row_count)
+{
+    for (int32_t offset = 0; (offset < row_count) && (offset < NAV_SIZE); offset++)
+    {
+        const int32_t row = nav_wrap_index(first_row + offset, NAV_SIZE);
+
+        (void) memset(&map->cells[row * NAV_SIZE], 0, sizeof(map->cells[0]) * (size_t) NAV_SIZE);
+    }
+}
+
+static void clear_cols(nav_heightmap_t *map, int32_t first_col, int32_t col_count)
+{
+    for (int32_t offset = 0; (offset < col_count) && (offset < NAV_SIZE); offset++)
+    {
+        const int32_t col = nav_wrap_index(first_col + offset, NAV_SIZE);
+
+        for (int32_t row = 0; row < NAV_SIZE; row++)
+        {
+            (void) memset(&map->cells[(row * NAV_SIZE) + col], 0, sizeof(map->cells[0]));
+        }
+    }
+}
+
+/* The storage of indices that leave at one end is that of those which come at the other. */
+static int32_t first_leaving(int32_t old_origin, int32_t new_origin)
+{
+    return (new_origin > old_origin) ? old_origin : new_origin;
+}
+
+static int32_t leaving_count(int32_t old_origin, int32_t new_origin)
+{
+    const int64_t moved = (int64_t) new_origin - (int64_t) old_origin;
+    const int64_t distance = (moved < 0) ? -moved : moved;
+
+    return (distance < (int64_t) NAV_SIZE) ? (int32_t) distance : NAV_SIZE;
+}
+
+static float height_of_cell(const nav_height_cell_t *cell, double time_s, double expiry_s)
+{
+    float z_m = NAV_SURFACE_UNKNOWN_M;
+
+    if ((cell->point_count > 0U) && ((time_s - (double) cell->time_s) <= expiry_s))
+    {
+        const double mean_m = cell->z_sum_m / (double) cell->point_count;
+
+        if (fabs(mean_m) < (double) NAV_SURFACE_UNKNOWN_M)
+        {
+            z_m = (float) mean_m;
+        }
+    }
+    return z_m;
+}
+
+static void unwrap(const nav_heightmap_t *map, double time_s, double expiry_s, float *z_site_m)
+{
+    const int32_t start_row = nav_wrap_index(map->origin_row, NAV_SIZE);
+    const int32_t start_col = nav_wrap_index(map->origin_col, NAV_SIZE);
+    int32_t stored_row = start_row;
+
+    for (int32_t row = 0; row < NAV_SIZE; row++)
+    {
+        const nav_height_cell_t *cells = &map->cells[stored_row * NAV_SIZE];
+        float *z_m = &z_site_m[row * NAV_SIZE];
+
+        for (int32_t col = start_col; col < NAV_SIZE; col++)
+        {
+            z_m[col - start_col] = height_of_cell(&cells[col], time_s, expiry_s);
+        }
+        for (int32_t col = 0; col < start_col; col++)
+        {
+            z_m[(col + NAV_SIZE) - start_col] = height_of_cell(&cells[col], time_s, expiry_s);
+        }
+        stored_row = ((stored_row + 1) < NAV_SIZE) ? (stored_row + 1) : 0;
+    }
+}
+
+static void add_height(nav_column_t *column, float z_m)
+{
+    if (z_m < NAV_SURFACE_UNKNOWN_M)
+    {
+        column->z_sum_m += (double) z_m;
+        column->known_count += 1U;
+    }
+}
+
+/* Heights south, at and north of a cell; a height filled in before does not count. */
+static nav_column_t column_at(const float *z_site_m, const uint8_t *is_filled, int32_t row, int32_t col)
+{
+    const int32_t index = (row * NAV_SIZE) + col;
+    nav_column_t column = {0.0, 0U};
+
+    if (col < NAV_SIZE)
+    {
+        if ((row > 0) && (is_filled[col] == 0U))
+        {
+            add_height(&column, z_site_m[index - NAV_SIZE]);
+        }
+        add_height(&column, z_site_m[index]);
+        if ((row + 1) < NAV_SIZE)
+        {
+            add_height(&column, z_site_m[index + NAV_SIZE]);
+        }
+    }
+    return column;
+}
+
+/* is_filled tells of the row to the south, and of this row west of where the work has come. */
+static void fill_row(float *z_site_m, uint8_t *is_filled, int32_t row, double neighbors_min)
+{
+    nav_column_t west = {0.0, 0U};
+    nav_column_t here = column_at(z_site_m, is_filled, row, 0);
+
+    for (int32_t col = 0; col < NAV_SIZE; col++)
+    {
+        const nav_column_t east = column_at(z_site_m, is_filled, row, col + 1);
+        const double known_count =
+            (double) (west.known_count + here.known_count + east.known_count);
+        float *z_m = &z_site_m[(row * NAV_SIZE) + col];
+
+        is_filled[col] = 0U;
+        if ((*z_m >= NAV_SURFACE_UNKNOWN_M) && (known_count >= neighbors_min))
+        {
+            *z_m = (float) ((west.z_sum_m + here.z_sum_m + east.z_sum_m) / known_count);
+            is_filled[col] = 1U;
+        }
+        west = here;
+        here = east;
+    }
+}
+
+void nav_heightmap_init(nav_heightmap_t *map, const nav_params_t *params)
+{
+    (void) memset(map, 0, sizeof(*map));
+    map->cell_m = params->heightmap_cell_m;
+}
+
+bool nav_heightmap_center(nav_heightmap_t *map, double x_site_m, double y_site_m)
+{
+    const double cells_per_m = 1.0 / map->cell_m;
+    int32_t row = 0;
+    int32_t col = 0;
+    const bool is_row_valid = nav_floor_index(x_site_m * cells_per_m, &row);
+    const bool is_col_valid = nav_floor_index(y_site_m * cells_per_m, &col);
+    const bool is_valid = is_row_valid && is_col_valid;
+
+    if (is_valid)
+    {
+        const int32_t origin_row = row - (NAV_SIZE / 2);
+        const int32_t origin_col = col - (NAV_SIZE / 2);
+
+        if (map->is_placed != 0U)
+        {
+            clear_rows(map,
+                       first_leaving(map->origin_row, origin_row),
+                       leaving_count(map->origin_row, origin_row));
+            clear_cols(map,
+                       first_leaving(map->origin_col, origin_col),
+                       leaving_count(map->origin_col, origin_col));
+        }
+        map->origin_row = origin_row;
+        map->origin_col = origin_col;
+        map->is_placed = 1U;
+    }
+    return is_valid;
+}
+
+nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
+                                const nav_pose_t *pose,
+                                double time_s,
+                                uint32_t image_id,
+                                const nav_point_t *points,
+                                uint32_t point_count)
+{
+    const nav_rotation_t rotation = rotation_of_pose(pose);
+    const nav_axis_t rows = axis_from(map->origin_row);
+    const nav_axis_t cols = axis_from(map->origin_col);
+    const double cells_per_m = 1.0 / map->cell_m;
+    const float image_time_s = (float) time_s;
+    nav_merge_t merge = {0U, 0U};
+
+    for (uint32_t point = 0U; (point < point_count) && (point < (uint32_t) NAV_CHUNK_POINTS_MAX);
+         point++)
+    {
+        const double row = cells_per_m * (pose->x_site_m + rotated(&points[point], rotation.r[0]));
+        const double col = cells_per_m * (pose->y_site_m + rotated(&points[point], rotation.r[1]));
+
+        if ((row >= rows.low) && (row < rows.high) && (col >= cols.low) && (col < cols.high))
+        {
+            const double z_m = pose->z_site_m + rotated(&points[point], rotation.r[2]);
+            const int32_t index = (storage_index(&rows, row) * NAV_SIZE) + storage_index(&cols, col);
+
+            merge.merged_count += add_to_cell(&map->cells[index], z_m, image_time_s, image_id);
+        }
+        else
+        {
+            merge.outside_count += 1U;
+        }
+    }
+    return merge;
+}
+
+void nav_heightmap_surface(const nav_heightmap_t *map,
+                           const nav_params_t *params,
+                           double time_s,
+                           nav_surface_t *surface)
+{
+    uint8_t is_filled[NAV_HEIGHTMAP_SIZE] = {0U};
+
+    surface->time_s = time_s;
+    surface->cell_m = map->cell_m;
+    surface->origin_row = map->origin_row;
+    surface->origin_col = map->origin_col;
+    unwrap(map, time_s, params->heightmap_expiry_s, surface->z_site_m);
+    for (int32_t row = 0; row < NAV_SIZE; row++)
+    {
+        fill_row(surface->z_site_m, is_filled, row, params->surface_fill_neighbors);
+    }
+}

@@ -1,0 +1,647 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file nav_tree.c
+ * @brief Ranks and tests the tree of candidate paths.
+ */
+#include "nav_tree.h"
+
+#include <math.h>
+
+#include "nav_math.h"
+
+#define SEGMENTS 3U
+#define TURNS ((uint32_t) NAV_TREE_TURNS)
+#define ARCS ((uint32_t) NAV_TREE_ARCS)
+#define PATHS ((uint32_t) NAV_TREE_PATHS)
+
+/** What one call works with. */
+typedef struct
+{
+    const nav_tree_scene_t *scene;
+    const nav_params_t *params;
+    const nav_select_arc_in_t *in;
+    nav_pose2_t start;
+    double start_distance_m; /* to the goal */
+    bool use_terrain_cost;
+    bool use_zone_cost;
+    bool test_terrain;
+    uint32_t ace_evaluations;
+} call_t;
+
+/** Where an arc of the tree ends, and what it cost. */
+typedef struct
+{
+    nav_pose2_t end;
+    double cost_s;
+    uint32_t pose_count; /* poses driven: all, or up to the waydisc */
+    bool is_at_goal;
+    nav_reason_t reason; /* of an infinite cell on the way */
+} branch_t;
+
+/** Verdict and worst bounds of an arc tested pose by pose. */
+typedef struct
+{
+    nav_reason_t reason;
+    nav_ace_bounds_t bounds;
+} test_t;
+
+void nav_tree_init(const nav_params_t *params, nav_tree_shapes_t *shapes)
+{
+    const nav_pose2_t origin = {0.0, 0.0, 0.0};
+    for (uint32_t k = 0U; k < ARCS; k++)
+    {
+        const double step = (double) k - (0.5 * (double) (ARCS - 1U));
+        const nav_arc_t arc = {params->tree_arc_length_m, step * params->tree_heading_step_rad};
+        shapes->heading_change_rad[k] = arc.heading_change_rad;
+        shapes->pose_count = nav_arc_pose_count(params, &arc);
+        for (uint32_t place = 0U; place < shapes->pose_count; place++)
+        {
+            const nav_pose2_t pose = nav_arc_pose(
+                &origin, &arc, (double) (place + 1U) / (double) shapes->pose_count);
+            shapes->forward_m[k][place] = pose.x_m;
+            shapes->right_m[k][place] = pose.y_m;
+        }
+    }
+}
+
+static nav_arc_t turn_arc(uint32_t turn)
+{
+    const nav_arc_t arc = {0.0, nav_wrap_angle((2.0 * NAV_PI * (double) turn) / (double) TURNS)};
+    return arc;
+}
+
+static nav_arc_t tree_arc(const call_t *call, uint32_t k)
+{
+    const nav_arc_t arc = {call->params->tree_arc_length_m,
+                           call->scene->shapes->heading_change_rad[k]};
+    return arc;
+}
+
+/** Pose at one place of an arc of the tree; cos and sin belong to the start's yaw. */
+static nav_pose2_t shape_pose(const nav_tree_shapes_t *shapes,
+                              const nav_pose2_t *start,
+                              uint32_t k,
+                              uint32_t place,
+                              const double cos_sin[2])
+{
+    const double forward_m = shapes->forward_m[k][place];
+    const double right_m = shapes->right_m[k][place];
+    const double fraction = (double) (place + 1U) / (double) shapes->pose_count;
+    const nav_pose2_t pose = {
+        start->x_m + (forward_m * cos_sin[0]) - (right_m * cos_sin[1]),
+        start->y_m + (forward_m * cos_sin[1]) + (right_m * cos_sin[0]),
+        start->yaw_rad + (fraction * shapes->heading_change_rad[k]),
+    };
+    return pose;
+}
+
+static double goal_distance_m(const call_t *call, const nav_pose2_t *pose)
+{
+    const double dx_m = call->in->goal.x_site_m - pose->x_m;
+    const double dy_m = call->in->goal.y_site_m - pose->y_m;
+    return sqrt((dx_m * dx_m) + (dy_m * dy_m));
+}
+
+/** Cost per metre of the cell under a pose beyond plain driving time, and why it is infinite if so. */
+static nav_reason_t terrain_cost(const call_t *call, const nav_pose2_t *pose, double *cost_s_per_m)
+{
+    const double plain_s_per_m = 1.0 / call->params->speed_max_m_per_s;
+    nav_reason_t reason = NAV_REASON_NONE;
+    uint32_t index = 0U;
+    if (nav_costmap_find(call->scene->costmap, pose->x_m, pose->y_m, &index))
+    {
+        /* cells that ACE closed may be crossed: ACE judges every pose itself */
+        nav_cost_cell_t cell = call->scene->costmap->cells[index];
+        cell.ace_failed_count = 0U;
+        reason = nav_costmap_reason(
+            &cell, call->params, call->use_terrain_cost, call->use_zone_cost);
+        *cost_s_per_m =
+            call->use_terrain_cost ? ((double) cell.cost_s_per_m - plain_s_per_m) : 0.0;
+    }
+    else
+    {
+        *cost_s_per_m = call->use_terrain_cost
+                            ? (plain_s_per_m * (call->params->cost_unknown_factor - 1.0))
+                            : 0.0;
+    }
+    return reason;
+}
+
+/** Follows one arc of the tree: time, terrain, end at the waydisc. */
+static branch_t branch_follow(const call_t *call, const nav_pose2_t *start, uint32_t k)
+{
+    const nav_tree_shapes_t *shapes = call->scene->shapes;
+    const double cos_sin[2] = {nav_cos(start->yaw_rad), nav_sin(start->yaw_rad)};
+    const double spacing_m = call->params->tree_arc_length_m / (double) shapes->pose_count;
+    const nav_arc_t arc = tree_arc(call, k);
+    branch_t branch = {*start, 0.0, 0U, false, NAV_REASON_NONE};
+
+    for (uint32_t place = 0U; (place < shapes->pose_count) && !branch.is_at_goal; place++)
+    {
+        double cost_s_per_m = 0.0;
+        branch.end = shape_pose(shapes, start, k, place, cos_sin);
+        const nav_reason_t reason = terrain_cost(call, &branch.end, &cost_s_per_m);
+        branch.reason = (branch.reason == NAV_REASON_NONE) ? reason : branch.reason;
+        branch.cost_s += cost_s_per_m * spacing_m;
+        branch.is_at_goal = goal_distance_m(call, &branch.end) <= call->in->goal.radius_m;
+        branch.pose_count = place + 1U;
+    }
+    branch.cost_s += nav_arc_duration_s(call->params, &arc) * (double) branch.pose_count /
+                     (double) shapes->pose_count;
+    return branch;
+}
+
+/** Cost-to-go from the end of a path, and whether it leads away. */
+static nav_reason_t leaf_cost(const call_t *call, const branch_t *leaf, double *cost_s)
+{
+    nav_reason_t reason = NAV_REASON_NONE;
+    const double distance_m = goal_distance_m(call, &leaf->end);
+    *cost_s = 0.0;
+    if (leaf->is_at_goal)
+    {
+        reason = NAV_REASON_NONE;
+    }
+    else if ((distance_m - call->start_distance_m) > call->params->negative_progress_max_m)
+    {
+        reason = NAV_REASON_NEGATIVE_PROGRESS;
+    }
+    else if (call->use_terrain_cost || call->use_zone_cost)
+    {
+        *cost_s = nav_global_cost_to_go_s(call->scene->global,
+                                          call->scene->costmap,
+                                          call->params,
+                                          &call->in->goal,
+                                          leaf->end.x_m,
+                                          leaf->end.y_m);
+    }
+    else
+    {
+        *cost_s = distance_m / call->params->speed_max_m_per_s;
+    }
+    return reason;
+}
+
+/** Why no way leads on from a leaf whose cost-to-go is infinite. */
+static nav_reason_t leaf_reason(const call_t *call, const branch_t *leaf)
+{
+    nav_reason_t reason = NAV_REASON_UNEXPECTED;
+    uint32_t index = 0U;
+    if (nav_costmap_find(call->scene->costmap, leaf->end.x_m, leaf->end.y_m, &index))
+    {
+        reason = nav_costmap_reason(&call->scene->costmap->cells[index],
+                                    call->params,
+                                    call->use_terrain_cost,
+                                    call->use_zone_cost);
+        reason = (reason == NAV_REASON_NONE) ? NAV_REASON_UNEXPECTED : reason;
+    }
+    return reason;
+}
+
+static double steering_s(const call_t *call, const nav_steering_t *from, const nav_arc_t *arc)
+{
+    const nav_steering_t to = nav_arc_steering(arc);
+    return nav_arc_steering_duration_s(call->params, from, &to);
+}
+
+/** Writes the cost, or the reason of an infinite one, of one path. */
+static void path_rank(const call_t *call,
+                      nav_tree_t *tree,
+                      uint32_t path,
+                      double before_s,
+                      const branch_t *leaf)
+{
+    double to_go_s = 0.0;
+    nav_reason_t reason = leaf->reason;
+    if (reason == NAV_REASON_NONE)
+    {
+        reason = leaf_cost(call, leaf, &to_go_s);
+    }
+    if ((reason == NAV_REASON_NONE) && (to_go_s >= NAV_COST_INFINITE))
+    {
+        reason = leaf_reason(call, leaf);
+    }
+    tree->path_reason[path] = (uint8_t) reason;
+    tree->path_cost_s[path] =
+        (reason == NAV_REASON_NONE) ? (before_s + leaf->cost_s + to_go_s) : NAV_COST_INFINITE;
+}
+
+/** Ranks the 11 paths that go on from a first arc. */
+static void rank_seconds(const call_t *call,
+                         nav_tree_t *tree,
+                         uint32_t node,
+                         const branch_t *first,
+                         double before_s)
+{
+    const nav_arc_t arc = tree_arc(call, node % ARCS);
+    const nav_steering_t steering = nav_arc_steering(&arc);
+    for (uint32_t k = 0U; k < ARCS; k++)
+    {
+        const uint32_t path = (node * ARCS) + k;
+        const nav_arc_t next = tree_arc(call, k);
+        branch_t leaf = *first;
+        leaf.cost_s = 0.0;
+        double cost_s = before_s + first->cost_s;
+        if ((first->reason == NAV_REASON_NONE) && !first->is_at_goal)
+        {
+            leaf = branch_follow(call, &first->end, k);
+            cost_s += steering_s(call, &steering, &next);
+        }
+        path_rank(call, tree, path, cost_s, &leaf);
+    }
+}
+
+/** Costs of all paths; nothing is tested. */
+static void rank(const call_t *call, nav_tree_t *tree)
+{
+    for (uint32_t turn = 0U; turn < TURNS; turn++)
+    {
+        const nav_arc_t turning = turn_arc(turn);
+        const nav_steering_t in_place = nav_arc_steering(&turning);
+        const nav_pose2_t turned = nav_arc_pose(&call->start, &turning, 1.0);
+        double turn_s = 0.0;
+        if (turn > 0U)
+        {
+            turn_s = steering_s(call, &call->in->steering, &turning) +
+                     nav_arc_duration_s(call->params, &turning);
+        }
+        for (uint32_t k = 0U; k < ARCS; k++)
+        {
+            const nav_arc_t arc = tree_arc(call, k);
+            const branch_t first = branch_follow(call, &turned, k);
+            const nav_steering_t *steering = (turn > 0U) ? &in_place : &call->in->steering;
+            rank_seconds(call,
+                         tree,
+                         (turn * ARCS) + k,
+                         &first,
+                         turn_s + steering_s(call, steering, &arc));
+        }
+    }
+}
+
+static bool is_cheaper(const nav_tree_t *tree, uint16_t a, uint16_t b)
+{
+    const double cost_a_s = tree->path_cost_s[a];
+    const double cost_b_s = tree->path_cost_s[b];
+    return (cost_a_s < cost_b_s) || ((cost_a_s <= cost_b_s) && (a < b));
+}
+
+/** Moves the root of order[0..count) down until no child is dearer. */
+static void sift_down(nav_tree_t *tree, uint32_t root, uint32_t count)
+{
+    uint32_t place = root;
+    bool is_placed = false;
+    for (uint32_t level = 0U; (level < PATHS) && !is_placed; level++)
+    {
+        uint32_t child = (2U * place) + 1U;
+        if (((child + 1U) < count) && is_cheaper(tree, tree->order[child], tree->order[child + 1U]))
+        {
+            child++;
+        }
+        is_placed = (child >= count) || is_cheaper(tree, tree->order[child], tree->order[place]);
+        if (!is_placed)
+        {
+            const uint16_t kept = tree->order[place];
+            tree->order[place] = tree->order[child];
+            tree->order[child] = kept;
+            place = child;
+        }
+    }
+}
+
+/** Heapsort of all paths by cost. */
+static void sort_paths(nav_tree_t *tree)
+{
+    for (uint32_t k = 0U; k < PATHS; k++)
+    {
+        tree->order[k] = (uint16_t) k;
+    }
+    for (uint32_t k = PATHS / 2U; k > 0U; k--)
+    {
+        sift_down(tree, k - 1U, PATHS);
+    }
+    for (uint32_t count = PATHS - 1U; count > 0U; count--)
+    {
+        const uint16_t kept = tree->order[0];
+        tree->order[0] = tree->order[count];
+        tree->order[count] = kept;
+        sift_down(tree, 0U, count);
+    }
+}
+
+static void worsen(nav_ace_bounds_t *worst, const nav_ace_bounds_t *bounds)
+{
+    worst->clearance_min_m = nav_min(worst->clearance_min_m, bounds->clearance_min_m);
+    worst->wheel_drop_max_m = nav_max(worst->wheel_drop_max_m, bounds->wheel_drop_max_m);
+    worst->tilt_max_rad = nav_max(worst->tilt_max_rad, bounds->tilt_max_rad);
+    worst->z_min_site_m = nav_min(worst->z_min_site_m, bounds->z_min_site_m);
+    worst->z_max_site_m = nav_max(worst->z_max_site_m, bounds->z_max_site_m);
+    worst->roll_min_rad = nav_min(worst->roll_min_rad, bounds->roll_min_rad);
+    worst->roll_max_rad = nav_max(worst->roll_max_rad, bounds->roll_max_rad);
+    worst->pitch_min_rad = nav_min(worst->pitch_min_rad, bounds->pitch_min_rad);
+    worst->pitch_max_rad = nav_max(worst->pitch_max_rad, bounds->pitch_max_rad);
+    worst->rocker_min_rad = nav_min(worst->rocker_min_rad, bounds->rocker_min_rad);
+    worst->rocker_max_rad = nav_max(worst->rocker_max_rad, bounds->rocker_max_rad);
+    worst->bogie_left_min_rad = nav_min(worst->bogie_left_min_rad, bounds->bogie_left_min_rad);
+    worst->bogie_left_max_rad = nav_max(worst->bogie_left_max_rad, bounds->bogie_left_max_rad);
+    worst->bogie_right_min_rad = nav_min(worst->bogie_right_min_rad, bounds->bogie_right_min_rad);
+    worst->bogie_right_max_rad = nav_max(worst->bogie_right_max_rad, bounds->bogie_right_max_rad);
+    worst->wheel_unknown = nav_max(worst->wheel_unknown, bounds->wheel_unknown);
+    worst->belly_unknown = nav_max(worst->belly_unknown, bounds->belly_unknown);
+    worst->is_certified = worst->is_certified & bounds->is_certified;
+}
+
+/** Bounds that anything else is worse than. */
+static nav_ace_bounds_t best_bounds(void)
+{
+    const nav_ace_bounds_t best = {.clearance_min_m = NAV_COST_INFINITE,
+                                   .z_min_site_m = NAV_COST_INFINITE,
+                                   .z_max_site_m = -NAV_COST_INFINITE,
+                                   .roll_min_rad = NAV_PI,
+                                   .roll_max_rad = -NAV_PI,
+                                   .pitch_min_rad = NAV_PI,
+                                   .pitch_max_rad = -NAV_PI,
+                                   .rocker_min_rad = NAV_PI,
+                                   .rocker_max_rad = -NAV_PI,
+                                   .bogie_left_min_rad = NAV_PI,
+                                   .bogie_left_max_rad = -NAV_PI,
+                                   .bogie_right_min_rad = NAV_PI,
+                                   .bogie_right_max_rad = -NAV_PI,
+                                   .is_certified = 1U};
+    return best;
+}
+
+/** Tests one pose, distance_m along the path, by zones and by ACE as the mode demands. */
+static nav_reason_t test_pose(call_t *call,
+                              const nav_pose2_t *pose,
+                              double distance_m,
+                              nav_ace_bounds_t *worst)
+{
+    nav_reason_t reason = NAV_REASON_NONE;
+    if (nav_kioz_forbids(
+            call->scene->kioz, pose->x_m, pose->y_m, call->in->uncertainty.global_position_m))
+    {
+        reason = NAV_REASON_KIOZ;
+    }
+    else if (call->test_terrain)
+    {
+        const nav_uncertainty_t grown =
+            nav_ace_grow(call->params, &call->in->uncertainty, distance_m);
+        nav_ace_bounds_t bounds;
+        nav_ace_evaluate(&call->scene->ace, pose, &grown, false, &bounds);
+        call->ace_evaluations++;
+        worsen(worst, &bounds);
+        reason = (nav_reason_t) bounds.reason;
+        nav_costmap_feedback(call->scene->costmap, pose->x_m, pose->y_m, reason);
+    }
+    else
+    {
+        reason = NAV_REASON_NONE;
+    }
+    return reason;
+}
+
+static test_t test_turn(call_t *call, uint32_t turn)
+{
+    const nav_arc_t arc = turn_arc(turn);
+    const uint32_t pose_count = (turn > 0U) ? nav_arc_pose_count(call->params, &arc) : 0U;
+    test_t test = {NAV_REASON_NONE, best_bounds()};
+    for (uint32_t k = 0U; (k < pose_count) && (test.reason == NAV_REASON_NONE); k++)
+    {
+        const nav_pose2_t pose =
+            nav_arc_pose(&call->start, &arc, (double) (k + 1U) / (double) pose_count);
+        test.reason = test_pose(call, &pose, 0.0, &test.bounds);
+    }
+    return test;
+}
+
+/** Tests an arc of the tree that begins distance_m along the path, up to the waydisc. */
+static test_t test_arc(call_t *call, const nav_pose2_t *start, uint32_t k, double distance_m)
+{
+    const nav_tree_shapes_t *shapes = call->scene->shapes;
+    const double cos_sin[2] = {nav_cos(start->yaw_rad), nav_sin(start->yaw_rad)};
+    const double spacing_m = call->params->tree_arc_length_m / (double) shapes->pose_count;
+    test_t test = {NAV_REASON_NONE, best_bounds()};
+    bool is_at_goal = false;
+
+    for (uint32_t place = 0U;
+         (place < shapes->pose_count) && (test.reason == NAV_REASON_NONE) && !is_at_goal;
+         place++)
+    {
+        const nav_pose2_t pose = shape_pose(shapes, start, k, place, cos_sin);
+        test.reason = test_pose(
+            call, &pose, distance_m + ((double) (place + 1U) * spacing_m), &test.bounds);
+        is_at_goal = goal_distance_m(call, &pose) <= call->in->goal.radius_m;
+    }
+    return test;
+}
+
+/** Tests what of a path has not been tested before; bounds are the worst of the whole path. */
+static test_t test_path(call_t *call, nav_tree_t *tree, uint32_t path)
+{
+    const uint32_t node = path / ARCS;
+    const uint32_t turn = node / ARCS;
+    const nav_arc_t turning = turn_arc(turn);
+    const nav_pose2_t turned = nav_arc_pose(&call->start, &turning, 1.0);
+    test_t test = {(nav_reason_t) tree->turn_verdict[turn], tree->turn_bounds[turn]};
+
+    if (tree->turn_verdict[turn] == (uint8_t) NAV_TREE_UNTESTED)
+    {
+        test = test_turn(call, turn);
+        tree->turn_verdict[turn] = (uint8_t) test.reason;
+        tree->turn_bounds[turn] = test.bounds;
+    }
+    if (test.reason == NAV_REASON_NONE)
+    {
+        if (tree->first_verdict[node] == (uint8_t) NAV_TREE_UNTESTED)
+        {
+            test = test_arc(call, &turned, node % ARCS, 0.0);
+            tree->first_verdict[node] = (uint8_t) test.reason;
+            worsen(&test.bounds, &tree->turn_bounds[turn]);
+            tree->first_bounds[node] = test.bounds;
+        }
+        test.reason = (nav_reason_t) tree->first_verdict[node];
+        test.bounds = tree->first_bounds[node];
+    }
+    if (test.reason == NAV_REASON_NONE)
+    {
+        const branch_t first = branch_follow(call, &turned, node % ARCS);
+        if (!first.is_at_goal)
+        {
+            test = test_arc(call, &first.end, path % ARCS, call->params->tree_arc_length_m);
+            worsen(&test.bounds, &tree->first_bounds[node]);
+        }
+        tree->second_verdict[path] = (uint8_t) test.reason;
+    }
+    return test;
+}
+
+static void clear_verdicts(nav_tree_t *tree)
+{
+    for (uint32_t k = 0U; k < TURNS; k++)
+    {
+        tree->turn_verdict[k] = (uint8_t) NAV_TREE_UNTESTED;
+        tree->turn_bounds[k] = best_bounds();
+    }
+    for (uint32_t k = 0U; k < (uint32_t) NAV_TREE_FIRST_ARCS; k++)
+    {
+        tree->first_verdict[k] = (uint8_t) NAV_TREE_UNTESTED;
+        tree->first_bounds[k] = best_bounds();
+    }
+    for (uint32_t k = 0U; k < PATHS; k++)
+    {
+        tree->second_verdict[k] = (uint8_t) NAV_TREE_UNTESTED;
+    }
+}
+
+/** Tests paths from the cheapest. Paths not reached are rejected by cost or by the budget. */
+static void test_paths(call_t *call, nav_tree_t *tree, nav_select_arc_out_t *out)
+{
+    const bool is_one_path = (call->in->mode == (uint32_t) NAV_MODE_UNGUARDED) ||
+                             (call->in->mode == (uint32_t) NAV_MODE_GUARDED);
+    nav_reason_t rest = NAV_REASON_NONE;
+
+    for (uint32_t k = 0U; k < PATHS; k++)
+    {
+        const uint32_t path = tree->order[k];
+        if (tree->path_reason[path] == (uint8_t) NAV_REASON_NONE)
+        {
+            if (rest == NAV_REASON_NONE)
+            {
+                const test_t test = test_path(call, tree, path);
+                out->paths_tested++;
+                tree->path_reason[path] = (uint8_t) test.reason;
+                if (test.reason == NAV_REASON_NONE)
+                {
+                    out->path_index = path;
+                    out->bounds = test.bounds;
+                    rest = NAV_REASON_COST;
+                }
+                else if (is_one_path)
+                {
+                    rest = NAV_REASON_COST;
+                }
+                else if (call->ace_evaluations >= (uint32_t) call->params->ace_budget_poses)
+                {
+                    rest = NAV_REASON_BUDGET;
+                }
+                else
+                {
+                    rest = NAV_REASON_NONE;
+                }
+            }
+            else
+            {
+                tree->path_reason[path] = (uint8_t) rest;
+            }
+        }
+        out->rejections[tree->path_reason[path]]++;
+    }
+}
+
+static void add_point(nav_select_arc_out_t *out, const nav_pose2_t *pose)
+{
+    if (out->path_point_count < (uint32_t) NAV_PATH_POINTS_MAX)
+    {
+        nav_point_t *point = &out->path_points[out->path_point_count];
+        point->x_m = (float) pose->x_m;
+        point->y_m = (float) pose->y_m;
+        out->path_point_count++;
+    }
+}
+
+/** Adds the poses of an arc to the shown path. @return where it ends */
+static branch_t show_arc(const call_t *call,
+                         const nav_pose2_t *start,
+                         uint32_t k,
+                         nav_select_arc_out_t *out)
+{
+    const double cos_sin[2] = {nav_cos(start->yaw_rad), nav_sin(start->yaw_rad)};
+    const branch_t branch = branch_follow(call, start, k);
+    for (uint32_t place = 0U; place < branch.pose_count; place++)
+    {
+        const nav_pose2_t pose = shape_pose(call->scene->shapes, start, k, place, cos_sin);
+        add_point(out, &pose);
+    }
+    return branch;
+}
+
+/** The part of the selected path that is driven: the first metre, or the first 30 deg of a turn. */
+static nav_arc_t executed_arc(const call_t *call, uint32_t path, const branch_t *first)
+{
+    const uint32_t node = path / ARCS;
+    const nav_arc_t turning = turn_arc(node / ARCS);
+    nav_arc_t arc = tree_arc(call, node % ARCS);
+    if (node >= ARCS)
+    {
+        arc.length_m = 0.0;
+        arc.heading_change_rad = nav_clamp(turning.heading_change_rad,
+                                           -call->params->execute_turn_rad,
+                                           call->params->execute_turn_rad);
+    }
+    else
+    {
+        const double driven_m = arc.length_m * (double) first->pose_count /
+                                (double) call->scene->shapes->pose_count;
+        const double length_m = nav_min(call->params->execute_length_m, driven_m);
+        arc.heading_change_rad *= length_m / arc.length_m;
+        arc.length_m = length_m;
+    }
+    return arc;
+}
+
+static void show_path(const call_t *call, const nav_tree_t *tree, nav_select_arc_out_t *out)
+{
+    const uint32_t node = out->path_index / ARCS;
+    const nav_arc_t turning = turn_arc(node / ARCS);
+    const nav_pose2_t turned = nav_arc_pose(&call->start, &turning, 1.0);
+    double to_go_s = 0.0;
+
+    add_point(out, &call->start);
+    const branch_t first = show_arc(call, &turned, node % ARCS, out);
+    branch_t leaf = first;
+    if (!first.is_at_goal)
+    {
+        leaf = show_arc(call, &first.end, out->path_index % ARCS, out);
+    }
+    (void) leaf_cost(call, &leaf, &to_go_s);
+    out->arc = executed_arc(call, out->path_index, &first);
+    out->path_cost_s = tree->path_cost_s[out->path_index];
+    out->cost_to_go_s = to_go_s;
+    if (!leaf.is_at_goal && (call->use_terrain_cost || call->use_zone_cost))
+    {
+        out->global_point_count = nav_global_descend(call->scene->global,
+                                                     call->scene->costmap,
+                                                     leaf.end.x_m,
+                                                     leaf.end.y_m,
+                                                     out->global_points,
+                                                     (uint32_t) NAV_GLOBAL_POINTS_MAX);
+    }
+}
+
+void nav_tree_select(nav_tree_t *tree,
+                     const nav_tree_scene_t *scene,
+                     const nav_select_arc_in_t *in,
+                     nav_select_arc_out_t *out)
+{
+    call_t call = {.scene = scene,
+                   .params = scene->ace.params,
+                   .in = in,
+                   .start = {in->pose.x_site_m, in->pose.y_site_m, in->pose.yaw_rad}};
+    call.start_distance_m = goal_distance_m(&call, &call.start);
+    call.use_terrain_cost = in->mode == (uint32_t) NAV_MODE_AVOID_ALL;
+    call.use_zone_cost = call.use_terrain_cost || (in->mode == (uint32_t) NAV_MODE_AVOID_KOZ);
+    call.test_terrain = call.use_terrain_cost || (in->mode == (uint32_t) NAV_MODE_GUARDED);
+
+    out->path_index = PATHS;
+    clear_verdicts(tree);
+    rank(&call, tree);
+    sort_paths(tree);
+    test_paths(&call, tree, out);
+    out->ace_evaluations = call.ace_evaluations;
+    out->status = (uint32_t) NAV_NO_PATH;
+    if (out->path_index < PATHS)
+    {
+        out->status = (uint32_t) NAV_OK;
+        show_path(&call, tree, out);
+    }
+}

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""ENav: the planner that is Navlib. It sends its own records, events and products among them."""
+
+from collections.abc import Callable, Mapping
+
+from pyharness.dp import Message
+from pyharness.navlib import Navlib
+from pyharness.planner import Planner
+from pyharness.records import Sink
+
+
+class Enav(Planner):
+    """Hands every call to Navlib and passes on what Navlib sends."""
+
+    def __init__(self, params: Mapping[str, float], sink: Sink) -> None:
+        """Start Navlib with the parameters."""
+        super().__init__(params, sink)
+        self._navlib = Navlib(params)
+        self._send(self._navlib.drain())
+
+    def _set_kioz(self, request: Message) -> Message:
+        return self._navlib.set_kioz(request)
+
+    def _process_disparity(self, request: Message) -> Message:
+        return self._navlib.process_disparity(request)
+
+    def _analyze_terrain(self, request: Message) -> Message:
+        return self._navlib.analyze_terrain(request)
+
+    def _select_arc(self, request: Message) -> Message:
+        return self._navlib.select_arc(request)
+
+    def _evaluate_arc(self, request: Message) -> Message:
+        return self._navlib.evaluate_arc(request)
+
+    def _recorded(
+        self,
+        kind_in: int,  # noqa: ARG002
+        kind_out: int,  # noqa: ARG002
+        request: Message,
+        function: Callable[[Message], Message],
+    ) -> Message:
+        answer = function(request)
+        self._send(self._navlib.drain())
+        return answer

@@ -1,0 +1,358 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scenarios: everything that decides how a drive goes, from YAML and the command line."""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+from pydantic import (
+    AfterValidator,
+    Discriminator,
+    Field,
+    SerializerFunctionWrapHandler,
+    Tag,
+    create_model,
+    model_serializer,
+    model_validator,
+)
+
+from pyharness.dp import Kind, Message, new_message
+from pyharness.executive_config import ExecutiveConfig
+from pyharness.navlib import zone_fault
+from pyharness.params import ParamDefinition, param_table, param_values, params_fault
+from pyharness.records import DriveInfo, Waypoint
+from pyharness.status import ZoneKind, ZoneShape
+from sim.camera import CameraConfig
+from sim.config import ConfigModel, parse_model, read_text
+from sim.errors import ConfigError
+from sim.generate import TerrainRecipe, generate
+from sim.localization import NoiseConfig
+from sim.random_streams import SEED_MAX
+from sim.slip import SlipConfig
+from sim.strict_yaml import read_tree
+from sim.terrain import Terrain
+from sim.terrain_io import read_terrain
+from sim.vehicle import Vehicle, load_vehicle
+
+Place = tuple[float, float]
+ModeName = Literal["unguarded", "guarded", "avoid_koz", "avoid_all"]
+Records = Literal["inputs", "display", "full"]
+Length = Annotated[float, Field(gt=0, le=1e4)]
+
+PRODUCT_LEVELS: Mapping[str, float] = {"inputs": 0.0, "display": 1.0, "full": 2.0}
+
+# two arcs of 1 m: the rover decides every metre, and VO errors of a drive are below the other one
+RADIUS_DEFAULT_M = 2.0
+# wheels and belly stay on the grid at any heading
+MARGIN_M = 2.0
+
+
+# ------------------------------------------------------------------ sections
+
+
+class TerrainSection(TerrainRecipe):
+    """A terrain file, or a recipe."""
+
+    file: str | None = None
+
+    @model_validator(mode="after")
+    def _is_one(self) -> Self:
+        others = sorted(self.model_fields_set - {"file"})
+        if self.file is not None and others:
+            raise ValueError(f"give a file or a recipe, not both (also given: {', '.join(others)})")
+        return self
+
+    @model_serializer(mode="wrap")
+    def _write(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        data: dict[str, Any] = handler(self)
+        file = data.pop("file", None)
+        return data if file is None else {"file": file}
+
+
+class WaypointSection(ConfigModel):
+    """A goal."""
+
+    goal_site_m: Place
+    radius_m: Annotated[float, Field(ge=0.1, le=100)] = RADIUS_DEFAULT_M
+    mode: ModeName = "avoid_all"
+
+
+class ZoneSection(ConfigModel):
+    """A keep-in or keep-out zone; each shape has its own keys."""
+
+    kind: Literal["keep_out", "keep_in"]
+    shape: Literal["circle", "rectangle", "triangle"]
+    center_site_m: Place | None = None
+    radius_m: Length | None = None
+    length_m: Length | None = None
+    width_m: Length | None = None
+    heading_deg: float | None = None
+    vertices_site_m: tuple[Place, Place, Place] | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        needed = {
+            "circle": {"center_site_m", "radius_m"},
+            "rectangle": {"center_site_m", "length_m", "width_m"},
+            "triangle": {"vertices_site_m"},
+        }[self.shape]
+        optional = {"heading_deg"} if self.shape == "rectangle" else set()
+        given = {name for name, value in self if value is not None} - {"kind", "shape"}
+        if needed - given:
+            raise ValueError(f"a {self.shape} needs {', '.join(sorted(needed - given))}")
+        if given - needed - optional:
+            surplus = ", ".join(sorted(given - needed - optional))
+            raise ValueError(f"a {self.shape} has no {surplus}")
+        if fault := zone_fault(self.record()):
+            raise ValueError(fault)
+        return self
+
+    def record(self) -> Message:
+        """Return the zone as Navlib takes it."""
+        zone: Message = np.zeros((), dtype=new_message(Kind.SET_KIOZ_IN)["zones"].dtype)
+        zone["kind"] = ZoneKind[self.kind.upper()]
+        zone["shape"] = ZoneShape[self.shape.upper()]
+        if self.center_site_m is not None:
+            zone["center_x_site_m"], zone["center_y_site_m"] = self.center_site_m
+        zone["radius_m"] = self.radius_m or 0.0
+        zone["length_m"] = self.length_m or 0.0
+        zone["width_m"] = self.width_m or 0.0
+        zone["heading_rad"] = math.radians(self.heading_deg or 0.0)
+        if self.vertices_site_m is not None:
+            zone["vertex_x_site_m"], zone["vertex_y_site_m"] = zip(
+                *self.vertices_site_m, strict=True
+            )
+        return zone
+
+
+def _param_type(row: ParamDefinition) -> Any:
+    """Return the annotation of one parameter: its range is that of the C table."""
+
+    def check(value: float) -> float:
+        if fault := row.fault(value):
+            raise ValueError(fault)
+        return value
+
+    return Annotated[float, AfterValidator(check)] | None
+
+
+NavlibSection: type[ConfigModel] = create_model(
+    "NavlibSection",
+    __base__=ConfigModel,
+    **{name: (_param_type(row), None) for name, row in param_table().items()},
+)  # type: ignore[call-overload]
+
+
+def _vehicle_tag(value: object) -> str:
+    return "path" if isinstance(value, str) else "inline"
+
+
+VehicleSection = Annotated[
+    Annotated[str, Tag("path")] | Annotated[Vehicle, Tag("inline")], Discriminator(_vehicle_tag)
+]
+
+
+class Scenario(ConfigModel):
+    """A drive. What is left out has a default; `resolve` fills it in."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]{0,99}$")] = "demo"
+    seed: Annotated[int, Field(ge=0, le=SEED_MAX)] = 0
+    terrain: TerrainSection = TerrainSection(cfa=0.07)
+    start: tuple[float, float, float] = (-40.0, 0.0, 0.0)  # north, east, yaw in degrees
+    goal: Place | None = None
+    mode: ModeName | None = None
+    waypoints: Annotated[tuple[WaypointSection, ...], Field(min_length=1)] | None = None
+    zones: Annotated[tuple[ZoneSection, ...], Field(max_length=32)] = ()
+    planner: str = "enav"
+    navlib: NavlibSection = NavlibSection()  # type: ignore[valid-type]
+    vehicle: VehicleSection = "perseverance"
+    camera: CameraConfig = CameraConfig()
+    noise: NoiseConfig = NoiseConfig()
+    slip: SlipConfig = SlipConfig()
+    executive: ExecutiveConfig = ExecutiveConfig()
+    records: Records = "inputs"
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.waypoints is not None and (self.goal, self.mode) != (None, None):
+            raise ValueError("give waypoints, or goal and mode, not both")
+        return self
+
+
+# ------------------------------------------------------------------ reading
+
+
+def load_scenario(path: Path | None, overrides: Mapping[str, object]) -> Scenario:
+    """Read a scenario, apply overrides and fill in everything that was left out.
+
+    Relative names of files in a scenario start at its own folder, those of overrides at the
+    working directory.
+
+    Raises:
+        ConfigError: With one line for every fault.
+    """
+    text = "" if path is None else read_text(path)
+    source = "scenario" if path is None else str(path)
+    folder = Path() if path is None else path.parent
+    scenario = parse_model(text, source, Scenario, overrides)
+    return _resolve(scenario, folder, overrides)
+
+
+def place_of(path: Path | None, overrides: Mapping[str, object], key: str) -> str:
+    """Say where the value of a key was given, for messages about it."""
+    if any(name == key or name.startswith(f"{key}.") for name in overrides):
+        return f"--set {key}"
+    if path is None:
+        return f"default scenario: {key}"
+    parts = tuple(int(part) if part.isdecimal() else part for part in key.split("."))
+    places = read_tree(read_text(path), str(path)).places
+    return f"{places.get(parts, str(path))}: {key}"
+
+
+def _resolve(scenario: Scenario, folder: Path, overrides: Mapping[str, object]) -> Scenario:
+    terrain_folder = Path() if "terrain.file" in overrides else folder
+    vehicle = scenario.vehicle
+    if isinstance(vehicle, str):
+        vehicle_folder = Path() if "vehicle" in overrides else folder
+        is_file = vehicle.endswith((".yaml", ".yml"))
+        vehicle = load_vehicle(vehicle_folder / vehicle if is_file else vehicle)
+    given = {name: value for name, value in scenario.navlib if value is not None}
+    level = {"product_level": PRODUCT_LEVELS[scenario.records]}
+    params = param_values({**vehicle_params(vehicle), **level, **given})
+    if fault := params_fault(params):
+        raise ConfigError([f"navlib: {fault}"])
+    waypoints = scenario.waypoints or (
+        WaypointSection(
+            goal_site_m=scenario.goal or (40.0, 0.0), mode=scenario.mode or "avoid_all"
+        ),
+    )
+    return scenario.model_copy(
+        update={
+            "terrain": _resolve_terrain(scenario, terrain_folder),
+            "goal": None,
+            "mode": None,
+            "waypoints": waypoints,
+            "planner": _resolve_planner(scenario.planner, overrides, folder),
+            "navlib": NavlibSection(**params),
+            "vehicle": vehicle,
+        }
+    )
+
+
+def _resolve_terrain(scenario: Scenario, folder: Path) -> TerrainSection:
+    terrain = scenario.terrain
+    if terrain.file is not None:
+        return TerrainSection(file=str((folder / terrain.file).absolute()))
+    update: dict[str, Any] = {}
+    if "seed" not in terrain.model_fields_set:
+        update["seed"] = scenario.seed
+    if terrain.start_m is None:
+        update["start_m"] = scenario.start[:2]
+        update["start_yaw_deg"] = scenario.start[2]
+    if terrain.base_file is not None:
+        update["base_file"] = str((folder / terrain.base_file).absolute())
+    return terrain.model_copy(update=update)
+
+
+def _resolve_planner(name: str, overrides: Mapping[str, object], folder: Path) -> str:
+    if ":" not in name:
+        return name
+    file_name, _, class_name = name.rpartition(":")
+    start = Path() if "planner" in overrides else folder
+    return f"{(start / file_name).absolute()}:{class_name}"
+
+
+def vehicle_params(vehicle: Vehicle) -> dict[str, float]:
+    """Return what Navlib must know of a vehicle, by the names of its parameters."""
+    geometry, belly, limits = vehicle.geometry, vehicle.belly, vehicle.navlib_limits
+    front, middle, rear = (
+        geometry.hub_left_front_m,
+        geometry.hub_left_middle_m,
+        geometry.hub_left_rear_m,
+    )
+    return {
+        "wheel_radius_m": geometry.wheel_radius_m,
+        "wheel_width_m": geometry.wheel_width_m,
+        "front_x_m": front[0],
+        "front_y_m": -front[1],
+        "middle_x_m": middle[0],
+        "middle_y_m": -middle[1],
+        "rear_x_m": rear[0],
+        "rear_y_m": -rear[1],
+        "rocker_pivot_x_m": geometry.rocker_pivot_left_m[0],
+        "rocker_pivot_height_m": -geometry.rocker_pivot_left_m[2],
+        "bogie_pivot_x_m": geometry.bogie_pivot_left_m[0],
+        "bogie_pivot_height_m": -geometry.bogie_pivot_left_m[2],
+        "belly_front_x_m": belly.front_m,
+        "belly_rear_x_m": belly.rear_m,
+        "belly_half_width_m": belly.half_width_m,
+        "belly_height_m": belly.height_m,
+        "speed_max_m_per_s": vehicle.drive.wheel_speed_max_m_s,
+        "steering_rate_rad_per_s": vehicle.steering_rate_rad_s,
+        "clearance_min_m": belly.height_m - limits.clearance_margin_m,
+        "tilt_max_rad": math.radians(limits.tilt_max_deg),
+        "rocker_max_rad": math.radians(limits.rocker_max_deg),
+        "bogie_max_rad": math.radians(limits.bogie_max_deg),
+        "wheel_drop_max_m": limits.wheel_drop_max_m,
+    }
+
+
+# ------------------------------------------------------------------ parts of a resolved scenario
+
+
+def make_terrain(scenario: Scenario) -> Terrain:
+    """Read or generate the terrain of a resolved scenario."""
+    if scenario.terrain.file is not None:
+        return read_terrain(scenario.terrain.file)
+    recipe = {name: getattr(scenario.terrain, name) for name in TerrainRecipe.model_fields}
+    return generate(TerrainRecipe.model_construct(**recipe))
+
+
+def outside_faults(scenario: Scenario, terrain: Terrain) -> dict[str, str]:
+    """Return what is wrong with each place, by its key, that does not lie on the terrain."""
+    limits = (
+        f"expected north {terrain.north_min_m + MARGIN_M:.1f} to"
+        f" {terrain.north_max_m - MARGIN_M:.1f} m, east {terrain.east_min_m + MARGIN_M:.1f} to"
+        f" {terrain.east_max_m - MARGIN_M:.1f} m"
+    )
+    places = {"start": scenario.start[:2]}
+    for index, waypoint in enumerate(scenario.waypoints or ()):
+        places[f"waypoints.{index}.goal_site_m"] = waypoint.goal_site_m
+    return {
+        key: f"{north_m:g}, {east_m:g} is not on the terrain, {limits}"
+        for key, (north_m, east_m) in places.items()
+        if not terrain.contains(north_m, east_m, MARGIN_M)
+    }
+
+
+def drive_info(scenario: Scenario) -> DriveInfo:
+    """Return what the record stream does not say about a resolved scenario."""
+    north_m, east_m, yaw_deg = scenario.start
+    return DriveInfo(
+        name=scenario.name,
+        planner=scenario.planner if ":" not in scenario.planner else Path(scenario.planner).name,
+        seed=scenario.seed,
+        start_north_m=north_m,
+        start_east_m=east_m,
+        start_yaw_rad=math.radians(yaw_deg),
+        waypoints=tuple(
+            Waypoint(*item.goal_site_m, item.radius_m, item.mode)
+            for item in scenario.waypoints or ()
+        ),
+    )
+
+
+def zones_request(scenario: Scenario) -> Message:
+    """Return the zones of a resolved scenario as Navlib takes them."""
+    request = new_message(Kind.SET_KIOZ_IN)
+    request["zone_count"] = len(scenario.zones)
+    for index, zone in enumerate(scenario.zones):
+        request["zones"][index] = zone.record()
+    return request
+
+
+def navlib_params(scenario: Scenario) -> dict[str, float]:
+    """Return all parameters of a resolved scenario."""
+    return {name: float(value) for name, value in scenario.navlib}

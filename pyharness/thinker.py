@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The executive's calls to the planner: each answers, and says how long the rover thinks about it."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from pyharness import messages
+from pyharness.dp import Message
+from pyharness.executive_config import ComputeTimes, PoseUncertainty
+from pyharness.messages import Arc, Pose6, Uncertainty
+from pyharness.planner import Planner
+from pyharness.protocols import Estimate
+from pyharness.records import Waypoint
+from pyharness.status import Reason, Status, status_text
+
+
+class PlannerFaultError(Exception):
+    """The planner failed, or refused a call it should have taken."""
+
+
+@dataclass(frozen=True, slots=True)
+class Image:
+    """A point cloud in the rover frame of the pose believed when it was taken."""
+
+    image_id: int
+    time_s: float
+    pose: Pose6
+    points_m: npt.NDArray[np.float32]
+    pair_count: int
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """What select_arc answered: an arc, or none and the rejections by reason."""
+
+    arc: Arc | None
+    rejections: str
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What evaluate_arc answered."""
+
+    is_safe: bool
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Thinker:
+    """Asks the planner in its records, and turns refusals into faults."""
+
+    planner: Planner
+    times: ComputeTimes
+
+    def process(self, image: Image) -> float:
+        """Have one image merged; return the compute time."""
+        requests = messages.cloud_requests(
+            image.time_s, image.pose, image.image_id, image.points_m
+        )
+        for request in requests:
+            self._ask(self.planner.process_disparity, "process_disparity", request)
+        return image.pair_count * self.times.process_disparity_s
+
+    def analyze(
+        self, time_s: float, pose: Pose6, goal: Waypoint, global_position_m: float
+    ) -> float:
+        """Have the costmap recomputed; return the compute time."""
+        request = messages.analyze_request(time_s, pose, goal, global_position_m)
+        self._ask(self.planner.analyze_terrain, "analyze_terrain", request)
+        return self.times.analyze_terrain_s
+
+    def select(
+        self, time_s: float, pose: Pose6, uncertainty: Uncertainty, goal: Waypoint, driven: Arc
+    ) -> tuple[Selection, float]:
+        """Have the next arc selected; return it and the compute time."""
+        request = messages.select_request(time_s, pose, uncertainty, goal, driven)
+        accepted = (Status.OK, Status.NO_PATH)
+        answer = self._ask(self.planner.select_arc, "select_arc", request, accepted)
+        duration_s = self.times.select_base_s
+        duration_s += self.times.select_per_evaluation_s * int(answer["ace_evaluations"])
+        rejections = describe_rejections(answer["rejections"])
+        if answer["status"] == Status.NO_PATH:
+            return Selection(None, rejections), duration_s
+        arc = Arc(float(answer["arc"]["length_m"]), float(answer["arc"]["heading_change_rad"]))
+        if arc.is_empty or not math.isfinite(arc.length_m + arc.heading_change_rad):
+            raise PlannerFaultError(f"select_arc answered an arc that leads nowhere: {arc}")
+        return Selection(arc, rejections), duration_s
+
+    def evaluate(
+        self, time_s: float, pose: Pose6, uncertainty: Uncertainty, arc: Arc, mode: str
+    ) -> tuple[Verdict, float]:
+        """Have an arc evaluated; return the verdict and the compute time."""
+        request = messages.evaluate_request(time_s, pose, uncertainty, arc, mode)
+        answer = self._ask(self.planner.evaluate_arc, "evaluate_arc", request)
+        duration_s = self.times.evaluate_base_s
+        duration_s += self.times.evaluate_per_pose_s * int(answer["pose_count"])
+        if answer["is_safe"]:
+            return Verdict(True, f"evaluate_arc at {time_s:.3f} s said safe"), duration_s
+        reason = Reason(int(answer["reason"])).name.lower()
+        text = (
+            f"evaluate_arc at {time_s:.3f} s said unsafe: {reason} at pose"
+            f" {int(answer['failing_index'])}, {float(answer['failing_at']):.2f} m or rad along"
+        )
+        return Verdict(False, text), duration_s
+
+    @staticmethod
+    def _ask(
+        call: Callable[[Message], Message],
+        name: str,
+        request: Message,
+        accepted: Sequence[int] = (Status.OK,),
+    ) -> Message:
+        try:
+            answer = call(request)
+            status = int(answer["status"])
+        except Exception as error:
+            raise PlannerFaultError(f"{name} failed: {error!r}") from error
+        if status not in accepted:
+            raise PlannerFaultError(f"{name} refused: {status_text(status)}")
+        return answer
+
+
+def describe_rejections(counts: Sequence[int]) -> str:
+    """Return `reason count, ...` for the reasons that occurred, the most frequent first."""
+    named = [(int(count), Reason(index).name.lower()) for index, count in enumerate(counts)]
+    used = sorted((-count, name) for count, name in named if count and name != "none")
+    return ", ".join(f"{name} {-count}" for count, name in used) or "none"
+
+
+def planning_uncertainty(
+    config: PoseUncertainty, estimate: Estimate, since_fix_m: float, remaining_m: float
+) -> Uncertainty:
+    """Return the uncertainty of the pose that the rover will have at the end of its arc.
+
+    Relative to the map: the error of the last fix, the motion since then, and how far the rover may
+    leave the arc in the part that is still ahead.
+    """
+    position_m = config.position_base_m + config.local_sigmas * estimate.sigma_local_m
+    yaw_deg = config.yaw_base_deg + config.yaw_per_m_deg * (since_fix_m + remaining_m)
+    return Uncertainty(
+        position_m=position_m + config.deviation_per_m * remaining_m,
+        yaw_rad=math.radians(yaw_deg),
+        global_position_m=config.global_sigmas * estimate.sigma_position_m,
+    )

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The world: terrain, kinematic rover, slip, cameras and localisation noise. See README.md."""

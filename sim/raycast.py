@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Ray casting on a terrain (kernel: `kernels/raycast.c`)."""
+
+import numpy as np
+import numpy.typing as npt
+
+from sim.clib import ffi, lib, pointer
+from sim.settle import terrain_struct
+from sim.terrain import Terrain
+
+
+class RayCaster:
+    """Casts rays on one terrain; holds its pyramid of block maxima."""
+
+    def __init__(self, terrain: Terrain) -> None:
+        """Build the pyramid."""
+        self.terrain = terrain
+        self._terrain_c = terrain_struct(terrain)
+        rows, cols = terrain.z_site_m.shape
+        size = lib.sim_pyramid_size(rows, cols, ffi.new("int32_t *"))
+        self._pyramid = np.empty(size, dtype=np.float32)
+        lib.sim_pyramid_build(self._terrain_c, pointer(self._pyramid, "float *"))
+
+    def ranges_m(
+        self,
+        origin_site_m: npt.ArrayLike,
+        directions: npt.ArrayLike,
+        range_max_m: float,
+        attitude: npt.ArrayLike | None = None,
+    ) -> npt.NDArray[np.float32]:
+        """Distance [n] to the ground along unit vectors [n, 3]; NaN where there is none.
+
+        The vectors are in SITE, or in a frame that the rotation matrix `attitude` turns to
+        SITE. A ray that starts below the ground has range 0. Outside the map there is no ground.
+        """
+        origin = np.ascontiguousarray(origin_site_m, dtype=np.float64).reshape(3)
+        turn = np.ascontiguousarray(np.eye(3) if attitude is None else attitude, dtype=np.float64)
+        rays = np.ascontiguousarray(directions, dtype=np.float64).reshape(-1, 3)
+        ranges = np.full(len(rays), np.nan, dtype=np.float32)
+        if np.all(np.isfinite(origin)) and np.all(np.isfinite(turn)):
+            lib.sim_raycast(
+                self._terrain_c,
+                pointer(self._pyramid, "const float *"),
+                pointer(origin, "const double *"),
+                pointer(turn, "const double *"),
+                pointer(rays, "const double *"),
+                len(rays),
+                range_max_m,
+                pointer(ranges, "float *"),
+            )
+        return ranges

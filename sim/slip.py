@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Wheel slip: less motion up-slope, more down-slope, drift on cross-slopes, and a wandering yaw.
+
+Slip is 1 - actual / commanded motion. SIM: a motion-relative part acts along the commanded motion,
+a slope-relative part straight down-slope when driving across it or turning in place; the factor at
+a tilt comes from a table, or from a Gaussian around it; yaw slip is a Brownian motion.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from sim.config import ConfigModel, parse_model
+
+TerrainClass = Literal["bedrock", "cohesive_soil", "sand"]
+
+# a wheel can slide back a little, and run ahead of its rim, but no further than this
+SLIP_MIN, SLIP_MAX = -0.5, 1.2
+# one draw of the Gaussian holds for this distance: slip changes with the soil, not with the clock
+DRAW_DISTANCE_M = 1.0
+
+
+class SlipConfig(ConfigModel):
+    """How the ground slips.
+
+    Attributes:
+        enabled: False: the rover moves exactly as commanded.
+        terrain_class: Which table.
+        mode: table: always the mean; gaussian: drawn around it.
+        lateral_share: Drift across the slope per metre, as a share of the slip at that tilt. No
+            number is published; "the same order" is, so half.
+        yaw_sigma_deg_sqrt_m: Standard deviation of the yaw slip after one metre. Not published.
+    """
+
+    enabled: bool = True
+    terrain_class: TerrainClass = "cohesive_soil"
+    mode: Literal["table", "gaussian"] = "gaussian"
+    lateral_share: Annotated[float, Field(ge=0, le=2)] = 0.5
+    yaw_sigma_deg_sqrt_m: Annotated[float, Field(ge=0, le=20)] = 0.5
+
+
+class SlipTable(ConfigModel):
+    """Mean and standard deviation of slip at some tilts."""
+
+    terrain_class: TerrainClass
+    tilt_deg: tuple[float, ...]
+    slip_mean: tuple[float, ...]
+    slip_sigma: tuple[float, ...]
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if not len(self.tilt_deg) == len(self.slip_mean) == len(self.slip_sigma) >= 1:
+            raise ValueError("tilt_deg, slip_mean and slip_sigma must be of one length")
+        if list(self.tilt_deg) != sorted(set(self.tilt_deg)):
+            raise ValueError("tilt_deg must increase")
+        return self
+
+    def at(self, tilt_rad: float) -> tuple[float, float]:
+        """Mean and standard deviation at a tilt, linear in between, constant outside."""
+        tilt_deg = math.degrees(tilt_rad)
+        mean = float(np.interp(tilt_deg, self.tilt_deg, self.slip_mean))
+        return mean, float(np.interp(tilt_deg, self.tilt_deg, self.slip_sigma))
+
+
+@cache
+def load_slip_table(terrain_class: TerrainClass) -> SlipTable:
+    """Built-in table of a terrain class."""
+    name = f"{terrain_class}.yaml"
+    text = resources.files("sim.slip_tables").joinpath(name).read_text("utf-8")
+    return parse_model(text, name, SlipTable)
+
+
+@dataclass(frozen=True, slots=True)
+class SlippedStep:
+    """What one commanded step becomes."""
+
+    north_m: float
+    east_m: float
+    yaw_slip_rad: float
+    slip: float
+
+
+class SlipModel:
+    """Turns commanded steps into actual ones."""
+
+    def __init__(self, config: SlipConfig, rng: np.random.Generator) -> None:
+        """Start with fresh draws."""
+        self._config = config
+        self._rng = rng
+        self._table = load_slip_table(config.terrain_class)
+        self._distance_m = 0.0
+        self._draw_end_m = 0.0
+        self._eta = 0.0
+
+    def expected(self, tilt_rad: float) -> float:
+        """Mean slip at a tilt when driving straight up it."""
+        return self._table.at(tilt_rad)[0] if self._config.enabled else 0.0
+
+    def step(
+        self,
+        north_m: float,
+        east_m: float,
+        wheel_path_m: float,
+        roll_rad: float,
+        pitch_rad: float,
+        yaw_rad: float,
+    ) -> SlippedStep:
+        """Actual step for a commanded one (north, east) from a settled attitude.
+
+        `wheel_path_m` is what the wheels roll, also when the rover turns in place.
+        """
+        if not self._config.enabled:
+            return SlippedStep(north_m, east_m, 0.0, 0.0)
+        self._advance(wheel_path_m)
+        uphill_north, uphill_east, tilt_rad = _uphill(roll_rad, pitch_rad, yaw_rad)
+        slip_tilt, level = self._factor(tilt_rad), self._table.at(0.0)[0]
+        length_m = math.hypot(north_m, east_m)
+        along, across = 0.0, 1.0
+        if length_m > 0.0:
+            along = (north_m * uphill_north + east_m * uphill_east) / length_m
+            across = math.sqrt(max(0.0, 1.0 - along * along)) if tilt_rad > 0.0 else 0.0
+        # on the level the whole slip holds back; of what the slope adds, the part along the motion
+        base = min(level, slip_tilt)
+        slip = min(max(base + (slip_tilt - base) * along, SLIP_MIN), SLIP_MAX)
+        drift_m = self._config.lateral_share * (slip_tilt - base) * across * wheel_path_m
+        sigma_rad = math.radians(self._config.yaw_sigma_deg_sqrt_m)
+        return SlippedStep(
+            north_m * (1.0 - slip) - drift_m * uphill_north,
+            east_m * (1.0 - slip) - drift_m * uphill_east,
+            sigma_rad * math.sqrt(wheel_path_m) * float(self._rng.standard_normal()),
+            slip if length_m > 0.0 else 0.0,
+        )
+
+    def _advance(self, wheel_path_m: float) -> None:
+        """Draw anew for every metre."""
+        if self._distance_m >= self._draw_end_m:
+            self._eta = float(self._rng.standard_normal())
+            self._draw_end_m += DRAW_DISTANCE_M
+        self._distance_m += wheel_path_m
+
+    def _factor(self, tilt_rad: float) -> float:
+        mean, sigma = self._table.at(tilt_rad)
+        eta = self._eta if self._config.mode == "gaussian" else 0.0
+        return min(max(mean + sigma * eta, 0.0), SLIP_MAX)
+
+
+def _uphill(roll_rad: float, pitch_rad: float, yaw_rad: float) -> tuple[float, float, float]:
+    """Unit vector up-slope (north, east) of the body's plane, and its tilt; zeros when level.
+
+    The body's down axis leans up-slope: its horizontal part points there.
+    """
+    cp, sp = math.cos(pitch_rad), math.sin(pitch_rad)
+    cr, sr = math.cos(roll_rad), math.sin(roll_rad)
+    cy, sy = math.cos(yaw_rad), math.sin(yaw_rad)
+    north, east = cy * sp * cr + sy * sr, sy * sp * cr - cy * sr
+    sine = math.hypot(north, east)
+    if sine < 1e-9:
+        return 0.0, 0.0, 0.0
+    return north / sine, east / sine, math.atan2(sine, cp * cr)

@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: Apache-2.0
+"""HDSim: the rover in its terrain, driven along arcs in steps of an eighth of a second."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from sim.camera import CameraConfig, StereoCamera
+from sim.kinematics import Arc, duration_s, pose_along, steering_duration_s, wheel_path_m
+from sim.localization import Localization, NoiseConfig, PoseEstimate
+from sim.random_streams import rng_for
+from sim.settle import SettledState, Settler
+from sim.slip import SlipConfig, SlipModel
+from sim.terrain import Terrain
+from sim.vehicle import Vehicle
+
+STEPS_PER_SECOND = 8
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TruthState(SettledState):
+    """The true rover at one instant.
+
+    Attributes:
+        time_s: Simulated time.
+        slip: Longitudinal slip of the last step, 1 - actual / commanded.
+        distance_driven_m: Horizontal path of the rover's origin so far.
+    """
+
+    time_s: float
+    slip: float
+    distance_driven_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Motion:
+    """An arc being driven."""
+
+    arc: Arc
+    start: tuple[float, float, float]
+    duration_s: float
+    wheel_path_m: float
+
+
+class World:
+    """One rover on one terrain; every source of chance has its own stream of the seed."""
+
+    def __init__(
+        self,
+        terrain: Terrain,
+        vehicle: Vehicle,
+        camera: CameraConfig | None = None,
+        noise: NoiseConfig | None = None,
+        slip: SlipConfig | None = None,
+        start: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        seed: int = 0,
+    ) -> None:
+        """Settle the rover at start = (north, east, yaw)."""
+        self.terrain = terrain
+        self.vehicle = vehicle
+        self._settler = Settler(terrain, vehicle)
+        self._camera = StereoCamera(terrain, vehicle, camera or CameraConfig())
+        self._camera_rng = rng_for(seed, "camera")
+        self._slip = SlipModel(slip or SlipConfig(), rng_for(seed, "slip"))
+        self._ticks = 0
+        self._distance_m = 0.0
+        self._motion: _Motion | None = None
+        self._motion_ticks = 0
+        # what slip has added to the commanded pose since the start of the arc
+        self._offset = (0.0, 0.0, 0.0)
+        self._truth = self._truth_of(self._settler.settle(*start), slip=0.0)
+        self._localization = Localization(
+            noise or NoiseConfig(), self._truth, rng_for(seed, "localization")
+        )
+
+    # -------------------------------------------------------------- state
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time, exact: an integer count of eighths of a second."""
+        return self._ticks / STEPS_PER_SECOND
+
+    @property
+    def truth(self) -> TruthState:
+        """The true state."""
+        return self._truth
+
+    @property
+    def estimate(self) -> PoseEstimate:
+        """What the rover believes."""
+        return self._localization.estimate
+
+    @property
+    def arc_done(self) -> bool:
+        """Whether there is nothing left to drive."""
+        return self.arc_fraction >= 1.0
+
+    @property
+    def arc_fraction(self) -> float:
+        """Driven share of the arc; 1 when standing."""
+        if self._motion is None:
+            return 1.0
+        return _fraction(self._motion, self._motion_ticks)
+
+    def expected_slip(self, tilt_rad: float) -> float:
+        """Mean slip of the present terrain class when driving up a slope."""
+        return self._slip.expected(tilt_rad)
+
+    # -------------------------------------------------------------- commands
+
+    def steering_duration_s(self, curvature_from: float, curvature_to: float) -> float:
+        """Time to steer from one curvature (1/m) to another; infinity is a turn in place."""
+        return steering_duration_s(curvature_from, curvature_to, self.vehicle)
+
+    def arc_duration_s(self, length_m: float, heading_change_rad: float) -> float:
+        """Time to drive an arc, without steering."""
+        return duration_s(Arc(length_m, heading_change_rad), self.vehicle)
+
+    def start_arc(self, length_m: float, heading_change_rad: float) -> None:
+        """Drive this arc from where the rover is; length 0 turns in place."""
+        if not (math.isfinite(length_m) and math.isfinite(heading_change_rad)):
+            raise ValueError(f"arc of {length_m} m and {heading_change_rad} rad is not finite")
+        arc = Arc(length_m, heading_change_rad)
+        start = (self._truth.x_m, self._truth.y_m, self._truth.yaw_rad)
+        self._motion = _Motion(
+            arc, start, duration_s(arc, self.vehicle), wheel_path_m(arc, self.vehicle)
+        )
+        self._motion_ticks = 0
+        self._offset = (0.0, 0.0, 0.0)
+
+    def stop(self) -> None:
+        """Forget the rest of the arc."""
+        self._motion = None
+
+    def wait(self, duration_s: float) -> None:
+        """Stand for a while, rounded up to whole steps."""
+        if not duration_s >= 0.0:
+            raise ValueError(f"cannot wait {duration_s} s")
+        ticks = math.ceil(duration_s * STEPS_PER_SECOND - 1e-9)
+        if ticks > 0:
+            self._ticks += ticks
+            self._truth = self._truth_of(self._truth, slip=0.0)
+            self._localization.move(self._truth, 0.0, 0.0, ticks / STEPS_PER_SECOND)
+
+    def step(self) -> TruthState:
+        """Advance by one eighth of a second; standing when there is no arc left."""
+        motion = self._motion
+        if motion is None or self.arc_done:
+            self.wait(1.0 / STEPS_PER_SECOND)
+            return self._truth
+        old = self._truth
+        before, after = (
+            _fraction(motion, self._motion_ticks),
+            _fraction(motion, self._motion_ticks + 1),
+        )
+        x0, y0, _ = pose_along(motion.start, motion.arc, before)
+        x1, y1, yaw1 = pose_along(motion.start, motion.arc, after)
+        offset_x, offset_y, offset_yaw = self._offset
+        cosine, sine = math.cos(offset_yaw), math.sin(offset_yaw)
+        # commanded step, in the direction that yaw slip has turned it to
+        north_m = cosine * (x1 - x0) - sine * (y1 - y0)
+        east_m = sine * (x1 - x0) + cosine * (y1 - y0)
+        rolled_m = (after - before) * motion.wheel_path_m
+        slipped = self._slip.step(
+            north_m, east_m, rolled_m, old.roll_rad, old.pitch_rad, old.yaw_rad
+        )
+        self._offset = (
+            offset_x + slipped.north_m - (x1 - x0),
+            offset_y + slipped.east_m - (y1 - y0),
+            offset_yaw + slipped.yaw_slip_rad,
+        )
+        self._ticks += 1
+        self._motion_ticks += 1
+        self._distance_m += math.hypot(slipped.north_m, slipped.east_m)
+        settled = self._settler.settle(
+            x1 + self._offset[0], y1 + self._offset[1], yaw1 + self._offset[2], old
+        )
+        self._truth = self._truth_of(settled, slipped.slip)
+        self._localization.move(self._truth, north_m, east_m, 1.0 / STEPS_PER_SECOND)
+        return self._truth
+
+    # -------------------------------------------------------------- sensors
+
+    def visual_odometry(self) -> bool:
+        """Fix the estimate by visual odometry; False when it failed."""
+        return self._localization.fix()
+
+    def image(self) -> npt.NDArray[np.float32]:
+        """Point cloud float32 [n, 3] in the rover frame of this instant."""
+        return self._camera.image(self._truth, self._camera_rng)
+
+    def picture(self) -> npt.NDArray[np.uint8]:
+        """Shaded picture of the left camera."""
+        return self._camera.picture(self._truth)
+
+    def _truth_of(self, state: SettledState, slip: float) -> TruthState:
+        return TruthState(
+            state.x_m,
+            state.y_m,
+            state.z_m,
+            state.roll_rad,
+            state.pitch_rad,
+            state.yaw_rad,
+            state.rocker_rad,
+            state.bogie_left_rad,
+            state.bogie_right_rad,
+            state.tilt_rad,
+            state.clearance_m,
+            state.wheel_drop_m,
+            state.contact_site_m,
+            state.residual_m,
+            state.iterations,
+            state.converged,
+            state.on_map,
+            self.time_s,
+            slip,
+            self._distance_m,
+        )
+
+
+def _fraction(motion: _Motion, ticks: int) -> float:
+    """Driven share of an arc; an arc shorter than a step takes one step."""
+    elapsed_s = ticks / STEPS_PER_SECOND
+    if elapsed_s >= motion.duration_s:
+        return 1.0 if ticks > 0 or motion.duration_s == 0.0 else 0.0
+    return elapsed_s / motion.duration_s
+
+
+def true_limit_violation(truth: SettledState, vehicle: Vehicle) -> str | None:
+    """The first fault limit that the true rover exceeds, with value and limit; None when safe.
+
+    Off the map nothing is known and nothing is reported: watch `on_map`.
+    """
+    limits = vehicle.fault_limits
+    bogie_rad = max(abs(truth.bogie_left_rad), abs(truth.bogie_right_rad))
+    for name, angle_rad, limit_deg in (
+        ("tilt", truth.tilt_rad, limits.tilt_max_deg),
+        ("rocker", abs(truth.rocker_rad), limits.rocker_max_deg),
+        ("bogie", bogie_rad, limits.bogie_max_deg),
+    ):
+        if math.degrees(angle_rad) > limit_deg:
+            return f"{name} {math.degrees(angle_rad):.1f} deg over {name}_max_deg {limit_deg:g}"
+    if truth.clearance_m < limits.clearance_min_m:
+        return f"clearance {truth.clearance_m:.3f} m under clearance_min_m {limits.clearance_min_m:g}"
+    if truth.wheel_drop_m > limits.wheel_drop_max_m:
+        return f"wheel drop {truth.wheel_drop_m:.3f} m over wheel_drop_max_m {limits.wheel_drop_max_m:g}"
+    return None
