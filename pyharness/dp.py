@@ -158,9 +158,7 @@ def native_schema() -> Schema:
 
 
 def _kinds() -> Any:
-    return IntEnum(  # type: ignore[misc]
-        "Kind", {item.name: kind for kind, item in native_schema().kinds.items()}
-    )
+    return IntEnum("Kind", {item.name: kind for kind, item in native_schema().kinds.items()})
 
 
 Kind = _kinds()

@@ -232,7 +232,9 @@ class DpReader:
         if version != FORMAT_VERSION:
             raise _DamageError(f"format version {version}, this program reads {FORMAT_VERSION}")
         if size > SCHEMA_SIZE_MAX_BYTES:
-            raise _DamageError(f"a schema of {size} bytes, expected at most {SCHEMA_SIZE_MAX_BYTES}")
+            raise _DamageError(
+                f"a schema of {size} bytes, expected at most {SCHEMA_SIZE_MAX_BYTES}"
+            )
         text = self._take(size, "the schema")
         (check, _) = struct.unpack(self._prefix + "2I", self._take(8, "the header's checksum"))
         if check != zlib.crc32(head + text):

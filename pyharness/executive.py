@@ -250,9 +250,7 @@ class Executive:
 
     def _begin_arc(self, arc: Arc) -> None:
         """Steer where the wheels stand differently, else drive at once."""
-        steering_s = self._world.steering_duration_s(
-            self._arc.curvature_per_m, arc.curvature_per_m
-        )
+        steering_s = self._world.steering_duration_s(self._arc.curvature_per_m, arc.curvature_per_m)
         self._close_motion()
         self._arc = arc
         if steering_s > 0.0:
@@ -327,7 +325,11 @@ class Executive:
         if self._is_evaluation_due():
             self._evaluate_arc()
             return
-        if self._queue and self._queue[0] == Activity.PROCESS_DISPARITY and not self._images.released:
+        if (
+            self._queue
+            and self._queue[0] == Activity.PROCESS_DISPARITY
+            and not self._images.released
+        ):
             self._queue.popleft()
         if self._queue and self._is_ready(self._queue[0]):
             self._start(self._queue[0])

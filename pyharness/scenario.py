@@ -4,7 +4,7 @@
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import (
@@ -25,7 +25,7 @@ from pyharness.params import ParamDefinition, param_table, param_values, params_
 from pyharness.records import DriveInfo, Waypoint
 from pyharness.status import ZoneKind, ZoneShape
 from sim.camera import CameraConfig
-from sim.config import ConfigModel, parse_model, read_text
+from sim.config import ConfigModel, load_model, parse_model
 from sim.errors import ConfigError
 from sim.generate import TerrainRecipe, generate
 from sim.localization import NoiseConfig
@@ -45,6 +45,7 @@ PRODUCT_LEVELS: Mapping[str, float] = {"inputs": 0.0, "display": 1.0, "full": 2.
 
 # two arcs of 1 m: the rover decides every metre, and VO errors of a drive are below the other one
 RADIUS_DEFAULT_M = 2.0
+GOAL_DEFAULT_M = (40.0, 0.0)
 # wheels and belly stay on the grid at any heading
 MARGIN_M = 2.0
 
@@ -138,11 +139,17 @@ def _param_type(row: ParamDefinition) -> Any:
     return Annotated[float, AfterValidator(check)] | None
 
 
-NavlibSection: type[ConfigModel] = create_model(
-    "NavlibSection",
-    __base__=ConfigModel,
-    **{name: (_param_type(row), None) for name, row in param_table().items()},
-)  # type: ignore[call-overload]
+if TYPE_CHECKING:
+
+    class NavlibSection(ConfigModel):
+        """Navlib's parameters by name."""
+
+else:
+    NavlibSection = create_model(
+        "NavlibSection",
+        __base__=ConfigModel,
+        **{name: (_param_type(row), None) for name, row in param_table().items()},
+    )
 
 
 def _vehicle_tag(value: object) -> str:
@@ -162,11 +169,11 @@ class Scenario(ConfigModel):
     terrain: TerrainSection = TerrainSection(cfa=0.07)
     start: tuple[float, float, float] = (-40.0, 0.0, 0.0)  # north, east, yaw in degrees
     goal: Place | None = None
-    mode: ModeName | None = None
+    mode: ModeName | None = None  # of the goal, or of all waypoints
     waypoints: Annotated[tuple[WaypointSection, ...], Field(min_length=1)] | None = None
     zones: Annotated[tuple[ZoneSection, ...], Field(max_length=32)] = ()
     planner: str = "enav"
-    navlib: NavlibSection = NavlibSection()  # type: ignore[valid-type]
+    navlib: NavlibSection = NavlibSection()
     vehicle: VehicleSection = "perseverance"
     camera: CameraConfig = CameraConfig()
     noise: NoiseConfig = NoiseConfig()
@@ -176,8 +183,8 @@ class Scenario(ConfigModel):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if self.waypoints is not None and (self.goal, self.mode) != (None, None):
-            raise ValueError("give waypoints, or goal and mode, not both")
+        if self.waypoints is not None and self.goal is not None:
+            raise ValueError("give waypoints or a goal, not both")
         return self
 
 
@@ -193,26 +200,64 @@ def load_scenario(path: Path | None, overrides: Mapping[str, object]) -> Scenari
     Raises:
         ConfigError: With one line for every fault.
     """
-    text = "" if path is None else read_text(path)
-    source = "scenario" if path is None else str(path)
-    folder = Path() if path is None else path.parent
-    scenario = parse_model(text, source, Scenario, overrides)
-    return _resolve(scenario, folder, overrides)
-
-
-def place_of(path: Path | None, overrides: Mapping[str, object], key: str) -> str:
-    """Say where the value of a key was given, for messages about it."""
-    if any(name == key or name.startswith(f"{key}.") for name in overrides):
-        return f"--set {key}"
     if path is None:
-        return f"default scenario: {key}"
-    parts = tuple(int(part) if part.isdecimal() else part for part in key.split("."))
-    places = read_tree(read_text(path), str(path)).places
-    return f"{places.get(parts, str(path))}: {key}"
+        return _resolve(parse_model("", "scenario", Scenario, overrides), Path(), overrides)
+    return _resolve(load_model(path, Scenario, overrides), path.parent, overrides)
+
+
+def check_places(
+    scenario: Scenario, terrain: Terrain, path: Path | None, overrides: Mapping[str, object]
+) -> None:
+    """Check that start and goals of a resolved scenario lie on the terrain.
+
+    Raises:
+        ConfigError: With one line for every one that does not.
+    """
+    places = {"start": scenario.start[:2]}
+    for index, waypoint in enumerate(scenario.waypoints or ()):
+        places[f"waypoints.{index}.goal_site_m"] = waypoint.goal_site_m
+    problems = [
+        f"{_place_of(path, overrides, key)}: {_off_terrain(terrain, *place)}"
+        for key, place in places.items()
+        if not _is_on_terrain(terrain, *place)
+    ]
+    if problems:
+        raise ConfigError(problems)
+
+
+def _is_on_terrain(terrain: Terrain, north_m: float, east_m: float) -> bool:
+    return terrain.contains(north_m, east_m, MARGIN_M) and math.isfinite(
+        terrain.height_at(north_m, east_m)
+    )
+
+
+def _off_terrain(terrain: Terrain, north_m: float, east_m: float) -> str:
+    south_m, north_end_m = terrain.north_min_m + MARGIN_M, terrain.north_max_m - MARGIN_M
+    west_m, east_end_m = terrain.east_min_m + MARGIN_M, terrain.east_max_m - MARGIN_M
+    return (
+        f"{north_m:g}, {east_m:g} is not on the terrain, expected ground within north"
+        f" {south_m:.1f} to {north_end_m:.1f} m, east {west_m:.1f} to {east_end_m:.1f} m"
+    )
+
+
+def _place_of(path: Path | None, overrides: Mapping[str, object], key: str) -> str:
+    """Say where the value of a key was given."""
+    names = [key] if key == "start" else ["goal", key, "waypoints"]
+    for name in names:
+        if any(given == name or given.startswith(f"{name}.") for given in overrides):
+            return f"--set {name}"
+    if path is not None:
+        known = read_tree(path.read_text("utf-8-sig"), str(path)).places
+        for name in names:
+            parts = tuple(int(part) if part.isdecimal() else part for part in name.split("."))
+            if parts in known:
+                return f"{known[parts]}: {name}"
+    return f"default {names[0]}"
 
 
 def _resolve(scenario: Scenario, folder: Path, overrides: Mapping[str, object]) -> Scenario:
-    terrain_folder = Path() if "terrain.file" in overrides else folder
+    is_terrain_override = not {"terrain", "terrain.file"}.isdisjoint(overrides)
+    terrain_folder = Path() if is_terrain_override else folder
     vehicle = scenario.vehicle
     if isinstance(vehicle, str):
         vehicle_folder = Path() if "vehicle" in overrides else folder
@@ -224,10 +269,10 @@ def _resolve(scenario: Scenario, folder: Path, overrides: Mapping[str, object]) 
     if fault := params_fault(params):
         raise ConfigError([f"navlib: {fault}"])
     waypoints = scenario.waypoints or (
-        WaypointSection(
-            goal_site_m=scenario.goal or (40.0, 0.0), mode=scenario.mode or "avoid_all"
-        ),
+        WaypointSection(goal_site_m=scenario.goal or GOAL_DEFAULT_M),
     )
+    if scenario.mode is not None:
+        waypoints = tuple(item.model_copy(update={"mode": scenario.mode}) for item in waypoints)
     return scenario.model_copy(
         update={
             "terrain": _resolve_terrain(scenario, terrain_folder),
@@ -235,7 +280,7 @@ def _resolve(scenario: Scenario, folder: Path, overrides: Mapping[str, object]) 
             "mode": None,
             "waypoints": waypoints,
             "planner": _resolve_planner(scenario.planner, overrides, folder),
-            "navlib": NavlibSection(**params),
+            "navlib": NavlibSection.model_validate(params),
             "vehicle": vehicle,
         }
     )
@@ -308,23 +353,6 @@ def make_terrain(scenario: Scenario) -> Terrain:
         return read_terrain(scenario.terrain.file)
     recipe = {name: getattr(scenario.terrain, name) for name in TerrainRecipe.model_fields}
     return generate(TerrainRecipe.model_construct(**recipe))
-
-
-def outside_faults(scenario: Scenario, terrain: Terrain) -> dict[str, str]:
-    """Return what is wrong with each place, by its key, that does not lie on the terrain."""
-    limits = (
-        f"expected north {terrain.north_min_m + MARGIN_M:.1f} to"
-        f" {terrain.north_max_m - MARGIN_M:.1f} m, east {terrain.east_min_m + MARGIN_M:.1f} to"
-        f" {terrain.east_max_m - MARGIN_M:.1f} m"
-    )
-    places = {"start": scenario.start[:2]}
-    for index, waypoint in enumerate(scenario.waypoints or ()):
-        places[f"waypoints.{index}.goal_site_m"] = waypoint.goal_site_m
-    return {
-        key: f"{north_m:g}, {east_m:g} is not on the terrain, {limits}"
-        for key, (north_m, east_m) in places.items()
-        if not terrain.contains(north_m, east_m, MARGIN_M)
-    }
 
 
 def drive_info(scenario: Scenario) -> DriveInfo:

@@ -10,8 +10,9 @@ from pyharness.clib import ffi, lib
 def _enumeration(name: str, type_name: str, prefix: str, sentinel: str = "") -> Any:
     """Make an IntEnum of a C enum; members lose the prefix, the counting sentinel is left out."""
     values = ffi.typeof(type_name).relements
-    members = {key.removeprefix(prefix): value for key, value in values.items() if key != sentinel}
-    return IntEnum(name, members)  # type: ignore[misc]
+    names = sorted((value, key) for key, value in values.items() if key != sentinel)
+    members = {key.removeprefix(prefix): value for value, key in names}
+    return IntEnum(name, members)
 
 
 Status = _enumeration("Status", "nav_status_t", "NAV_", "NAV_STATUS_COUNT")

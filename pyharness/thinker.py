@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executive's calls to the planner: each answers, and says how long the rover thinks about it."""
+"""The executive's calls to the planner: each answers, and says how long the rover thinks."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,9 +58,7 @@ class Thinker:
 
     def process(self, image: Image) -> float:
         """Have one image merged; return the compute time."""
-        requests = messages.cloud_requests(
-            image.time_s, image.pose, image.image_id, image.points_m
-        )
+        requests = messages.cloud_requests(image.time_s, image.pose, image.image_id, image.points_m)
         for request in requests:
             self._ask(self.planner.process_disparity, "process_disparity", request)
         return image.pair_count * self.times.process_disparity_s
@@ -124,7 +122,7 @@ class Thinker:
         return answer
 
 
-def describe_rejections(counts: Sequence[int]) -> str:
+def describe_rejections(counts: Iterable[int]) -> str:
     """Return `reason count, ...` for the reasons that occurred, the most frequent first."""
     named = [(int(count), Reason(index).name.lower()) for index, count in enumerate(counts)]
     used = sorted((-count, name) for count, name in named if count and name != "none")

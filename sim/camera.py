@@ -86,7 +86,8 @@ def pixel_directions(pair: StereoPair, width_px: int, height_px: int) -> Array:
     grid[..., 1] = y[None, :]
     grid[..., 2] = z[:, None]
     directions: Array = grid.reshape(-1, 3)
-    return directions / np.linalg.norm(directions, axis=1, keepdims=True)
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    return directions
 
 
 def range_sigma_m(
@@ -154,9 +155,7 @@ class StereoCamera:
         """Distances along the rays of a view, NaN without ground."""
         attitude = rotation(state.roll_rad, state.pitch_rad, state.yaw_rad)
         origin = np.array([state.x_m, state.y_m, state.z_m]) + attitude @ view.center_m
-        return self._caster.ranges_m(
-            origin, view.directions, self._config.range_max_m, attitude
-        )
+        return self._caster.ranges_m(origin, view.directions, self._config.range_max_m, attitude)
 
     def _cloud(
         self, state: SettledState, view: _View, rng: np.random.Generator
@@ -174,9 +173,9 @@ class StereoCamera:
             sigma = range_sigma_m(ranges, directions, view.baseline_m, pixel_sigma_rad)
             ranges = ranges + sigma * rng.standard_normal(len(ranges))
             directions, ranges = directions[ranges > 0.0], ranges[ranges > 0.0]
-        cloud: npt.NDArray[np.float32] = (
-            view.center_m + ranges[:, None] * directions
-        ).astype(np.float32)
+        cloud: npt.NDArray[np.float32] = (view.center_m + ranges[:, None] * directions).astype(
+            np.float32
+        )
         return cloud
 
     def picture(

@@ -26,9 +26,7 @@ def dtype_of(struct_name: str) -> np.dtype[np.void]:
         formats.append((np.dtype({"double": "f8", "int32_t": "i4"}[item.cname]), tuple(shape)))
         offsets.append(field.offset)
     size = ffi.sizeof(struct_name)
-    return np.dtype(
-        {"names": names, "formats": formats, "offsets": offsets, "itemsize": size}
-    )
+    return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size})
 
 
 def pointer(array: npt.NDArray[Any], ctype: str) -> Any:

@@ -9,7 +9,7 @@ class SimError(Exception):
 
 
 class TerrainError(SimError):
-    """A terrain file or recipe is unusable: one line with the file, what is wrong, what was expected."""
+    """A terrain file or recipe is unusable: one line with file, fault and what was expected."""
 
 
 class ConfigError(SimError):

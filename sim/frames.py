@@ -19,8 +19,3 @@ def rotation(roll_rad: float, pitch_rad: float, yaw_rad: float) -> npt.NDArray[n
             [-sp, cp * sr, cp * cr],
         ]
     )
-
-
-def wrap_angle_rad(angle_rad: float) -> float:
-    """The same angle within -pi (excluded) to pi."""
-    return math.pi - (math.pi - angle_rad) % (2.0 * math.pi)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Terrain from a recipe, in layers: base, undulation, slope, rocks (SIM section 3)."""
 
+import json
 import math
 from pathlib import Path
 from typing import Annotated, Self
@@ -10,7 +11,7 @@ import numpy.typing as npt
 from pydantic import Field, model_validator
 from scipy.interpolate import RectBivariateSpline
 
-from sim.config import ConfigModel
+from sim.config import ConfigModel, parse_model
 from sim.errors import TerrainError
 from sim.landforms import Landform, landform_up_m
 from sim.random_streams import SEED_MAX, rng_for
@@ -102,7 +103,7 @@ def generate(
     if seed is not None:
         recipe = TerrainRecipe.model_validate({**dict(recipe), "seed": seed})
     count = round(recipe.size_m / recipe.resolution_m)
-    axis_m = (np.arange(count) - 0.5 * (count - 1)) * recipe.resolution_m
+    axis_m = (np.arange(count, dtype=np.float64) - 0.5 * (count - 1)) * recipe.resolution_m
     ground = _base_z_m(recipe, axis_m)
     for index, layer in enumerate(_undulation_of(recipe)):
         rng = rng_for(recipe.seed, f"undulation.{index}")
@@ -114,6 +115,13 @@ def generate(
     return centred(
         ground.astype(np.float32), recipe.resolution_m, rocks, recipe.model_dump(mode="json")
     )
+
+
+def recipe_of(terrain: Terrain) -> TerrainRecipe | None:
+    """The recipe of a terrain that was generated, also after it was stored and read back."""
+    if terrain.recipe is None:
+        return None
+    return parse_model(json.dumps(terrain.recipe), "recipe", TerrainRecipe)
 
 
 def _undulation_of(recipe: TerrainRecipe) -> tuple[Undulation, ...]:
@@ -153,11 +161,11 @@ def _base_from_file(recipe: TerrainRecipe, path: Path, axis_m: Grid) -> Grid:
     if not np.all(np.isfinite(patch)):
         raise TerrainError(f"{path}: no-data nodes inside the wanted window, expected heights")
     degree = min(3, min(patch.shape) - 1)
-    spline = RectBivariateSpline(
-        base.north_m[rows], base.east_m[cols], patch, kx=degree, ky=degree
-    )
+    spline = RectBivariateSpline(base.north_m[rows], base.east_m[cols], patch, kx=degree, ky=degree)
     z_m: Grid = spline(middle_north + axis_m, middle_east + axis_m)
-    return recipe.base_scale * (z_m - z_m[len(axis_m) // 2, len(axis_m) // 2])
+    z_m -= z_m[len(axis_m) // 2, len(axis_m) // 2]
+    z_m *= recipe.base_scale
+    return z_m
 
 
 def _window(axis_m: Grid, middle_m: float, half_m: float, step_m: float) -> slice:

@@ -49,7 +49,7 @@ def pose_along(
 
 
 def steering_angles_rad(curvature_1_m: float, vehicle: Vehicle) -> npt.NDArray[np.float64]:
-    """Angles [4] of the corner wheels LF, LR, RF, RR, positive to the right, within +-90 degrees."""
+    """Angles [4] of the corner wheels LF, LR, RF, RR, positive to the right, within +-90 deg."""
     hubs = vehicle.hubs_m[list(CORNERS)]
     forward, sideways = _hub_velocity(curvature_1_m, hubs)
     sign = np.where(forward < 0, -1.0, 1.0)

@@ -34,9 +34,7 @@ class Landform(ConfigModel):
     width_m: Annotated[float, Field(gt=0, le=500)] = 10.0
 
 
-def landform_up_m(
-    form: Landform, north_m: Grid, east_m: Grid, rng: np.random.Generator
-) -> Grid:
+def landform_up_m(form: Landform, north_m: Grid, east_m: Grid, rng: np.random.Generator) -> Grid:
     """Heights (up) on the grid of north_m [n] and east_m [m], shape [n, m]."""
     n, e = north_m[:, None], east_m[None, :]
     shape = np.zeros((len(north_m), len(east_m)))
@@ -84,7 +82,9 @@ def _corridor(n: Grid, e: Grid, width_m: float) -> Grid:
 def _slope_transition(n: Grid, e: Grid, width_m: float) -> Grid:
     """Level, a parabola over the width, then the plane: heights and slopes are continuous."""
     run = n + 0.5 * width_m
-    rise = np.where(run < width_m, 0.5 * np.clip(run, 0.0, None) ** 2 / width_m, run - 0.5 * width_m)
+    rise = np.where(
+        run < width_m, 0.5 * np.clip(run, 0.0, None) ** 2 / width_m, run - 0.5 * width_m
+    )
     top = float(rise.max())
     result: Grid = (rise / top if top > 0 else rise) + 0.0 * e
     return result
@@ -148,7 +148,8 @@ def _maze_walls(
         | (near_left & wall_east[i, j])
         | (near_right & wall_east[i, j + 1])
     )
-    return (wall & inside).astype(np.float64)
+    walls: Grid = (wall & inside).astype(np.float64)
+    return walls
 
 
 def _rock_pile(n: Grid, e: Grid, width_m: float, rng: np.random.Generator) -> Grid:
@@ -158,6 +159,6 @@ def _rock_pile(n: Grid, e: Grid, width_m: float, rng: np.random.Generator) -> Gr
         bearing, distance = rng.uniform(0, 2 * math.pi), 0.2 * width_m * abs(rng.normal())
         radius = width_m * rng.uniform(0.04, 0.12)
         top = max(0.0, 1.0 - 2.0 * distance / width_m) * rng.uniform(0.5, 1.0)
-        r2 = ((n - distance * math.cos(bearing)) ** 2 + (e - distance * math.sin(bearing)) ** 2)
+        r2 = (n - distance * math.cos(bearing)) ** 2 + (e - distance * math.sin(bearing)) ** 2
         pile = np.maximum(pile, top * np.sqrt(np.clip(1.0 - r2 / radius**2, 0.0, None)))
     return pile

@@ -69,9 +69,7 @@ class PoseEstimate:
 class Localization:
     """Keeps the estimate of one run; the start pose is known but for the attitude error."""
 
-    def __init__(
-        self, config: NoiseConfig, start: SettledState, rng: np.random.Generator
-    ) -> None:
+    def __init__(self, config: NoiseConfig, start: SettledState, rng: np.random.Generator) -> None:
         """Draw the constant attitude error."""
         self._config = config
         self._rng = rng
@@ -110,9 +108,7 @@ class Localization:
             sigma_yaw_rad=math.sqrt(self._covariance[2, 2]),
         )
 
-    def move(
-        self, truth: SettledState, north_m: float, east_m: float, elapsed_s: float
-    ) -> None:
+    def move(self, truth: SettledState, north_m: float, east_m: float, elapsed_s: float) -> None:
         """Follow one step: the commanded motion as the wheels felt it, the attitude of the IMU.
 
         A step off the map cannot be followed and leaves the estimate where it is.
@@ -156,9 +152,7 @@ class Localization:
             yaw_sigma_rad = math.radians(config.vo_yaw_sigma_deg) if distance_m > 0 else 0.0
             self._attitude_error[2] = self._fix_yaw_error + yaw_sigma_rad * float(noise[3])
             self._covariance[2, 2] += yaw_sigma_rad**2
-        sigma_fraction = (
-            config.vo_sigma_fraction if succeeds else config.odometry_sigma_fraction
-        )
+        sigma_fraction = config.vo_sigma_fraction if succeeds else config.odometry_sigma_fraction
         self._grow(sigma_fraction * distance_m)
         self._fix_truth = self._truth
         self._fix_position = self._position

@@ -61,7 +61,8 @@ class RockField:
     @property
     def reach_m(self) -> npt.NDArray[np.float64]:
         """Radius [n] of a circle that holds the whole outline."""
-        return self.radius_m * (1.0 + np.sum(self.amplitude, axis=1))
+        reach: npt.NDArray[np.float64] = self.radius_m * (1.0 + np.sum(self.amplitude, axis=1))
+        return reach
 
     def subset(self, keep: npt.NDArray[np.bool_]) -> "RockField":
         """The rocks where `keep` is True."""

@@ -122,9 +122,7 @@ class Settler:
         lib.sim_settle(self._terrain_c, self._vehicle_c, pose, _guess_struct(guess), out)
         return _state_of(out)
 
-    def settle_many(
-        self, poses: npt.ArrayLike, chained: bool = False
-    ) -> npt.NDArray[np.void]:
+    def settle_many(self, poses: npt.ArrayLike, chained: bool = False) -> npt.NDArray[np.void]:
         """Settle poses [n, 3] of (north, east, yaw); SETTLED_DTYPE [n].
 
         With `chained` each pose starts from its predecessor, as along a drive.

@@ -10,6 +10,7 @@ import math
 import re
 from collections.abc import Hashable
 from dataclasses import dataclass, field
+from typing import Any
 
 import yaml
 
@@ -55,7 +56,7 @@ class _Builder:
     problems: list[str] = field(default_factory=list)
     root: object = None
 
-    def place(self, mark: yaml.Mark) -> str:
+    def place(self, mark: Any) -> str:
         return f"{self.source}:{mark.line + 1}:{mark.column + 1}"
 
     def build(self, text: str) -> None:
@@ -111,8 +112,11 @@ def _dotted(path: Path) -> str:
 def _refusal(event: yaml.NodeEvent, depth: int) -> str | None:
     if isinstance(event, yaml.AliasEvent) or event.anchor is not None:
         return "anchors and aliases (&, *) are not supported, write the value out"
-    if getattr(event, "tag", None) is not None:
-        return f"tags such as {event.tag!r} are not supported"
+    tag = getattr(event, "tag", None)
+    if tag is not None:
+        return f"tags such as {tag!r} are not supported"
+    if isinstance(event, yaml.ScalarEvent) and any("\ud800" <= c <= "\udfff" for c in event.value):
+        return "half a surrogate pair is not text"
     if depth > DEPTH_MAX:
         return f"nested deeper than {DEPTH_MAX} levels"
     return None
@@ -155,7 +159,10 @@ def _represent_text(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
 
 
 def _represent_number(dumper: yaml.SafeDumper, number: float) -> yaml.ScalarNode:
-    return dumper.represent_scalar("tag:yaml.org,2002:float", repr(number))
+    text = repr(number)
+    if "." not in text:  # 1e-09: PyYAML takes only 1.0e-09 for a number
+        text = text.replace("e", ".0e")
+    return dumper.represent_scalar("tag:yaml.org,2002:float", text)
 
 
 _Dumper.add_representer(str, _represent_text)
@@ -165,6 +172,11 @@ _Dumper.add_representer(float, _represent_number)
 def write_tree(data: object) -> str:
     """Deterministic YAML text of plain data, keys in their given order."""
     text: str = yaml.dump(
-        data, Dumper=_Dumper, sort_keys=False, allow_unicode=True, default_flow_style=None, width=100
+        data,
+        Dumper=_Dumper,
+        sort_keys=False,
+        allow_unicode=True,
+        default_flow_style=None,
+        width=100,
     )
     return text

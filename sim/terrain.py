@@ -56,22 +56,22 @@ class Terrain:
     @property
     def north_max_m(self) -> float:
         """North of the last row."""
-        return self.north_min_m + (self.z_site_m.shape[0] - 1) * self.resolution_m
+        return self.north_min_m + float(self.z_site_m.shape[0] - 1) * self.resolution_m
 
     @property
     def east_max_m(self) -> float:
         """East of the last column."""
-        return self.east_min_m + (self.z_site_m.shape[1] - 1) * self.resolution_m
+        return self.east_min_m + float(self.z_site_m.shape[1] - 1) * self.resolution_m
 
     @property
     def north_m(self) -> npt.NDArray[np.float64]:
         """North of every row."""
-        return self.north_min_m + self.resolution_m * np.arange(self.z_site_m.shape[0])
+        return self.north_min_m + self.resolution_m * np.arange(self.z_site_m.shape[0], dtype=float)
 
     @property
     def east_m(self) -> npt.NDArray[np.float64]:
         """East of every column."""
-        return self.east_min_m + self.resolution_m * np.arange(self.z_site_m.shape[1])
+        return self.east_min_m + self.resolution_m * np.arange(self.z_site_m.shape[1], dtype=float)
 
     def contains(self, north_m: float, east_m: float, margin_m: float = 0.0) -> bool:
         """Whether a point lies at least `margin_m` inside the grid; False for NaN."""
@@ -80,9 +80,7 @@ class Terrain:
             and self.east_min_m + margin_m <= east_m <= self.east_max_m - margin_m
         )
 
-    def height_at(
-        self, north_m: npt.ArrayLike, east_m: npt.ArrayLike
-    ) -> npt.NDArray[np.float64]:
+    def height_at(self, north_m: npt.ArrayLike, east_m: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """Bilinear z (down) at points of any shape; NaN outside the grid."""
         row = (np.asarray(north_m, dtype=np.float64) - self.north_min_m) / self.resolution_m
         col = (np.asarray(east_m, dtype=np.float64) - self.east_min_m) / self.resolution_m
@@ -92,7 +90,7 @@ class Terrain:
         i = np.minimum(row.astype(np.int64), rows - 2)
         j = np.minimum(col.astype(np.int64), cols - 2)
         u, v = row - i, col - j
-        z = self.z_site_m.astype(np.float64, copy=False) if rows * cols < 64 else self.z_site_m
+        z = self.z_site_m
         south = z[i, j] * (1 - v) + z[i, j + 1] * v
         north = z[i + 1, j] * (1 - v) + z[i + 1, j + 1] * v
         return np.where(inside, south * (1 - u) + north * u, np.nan)

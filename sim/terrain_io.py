@@ -270,7 +270,7 @@ def _cell_of_dataset(path: Path, dataset: Any) -> float:
     unit_m = 1.0
     if dataset.crs is not None and dataset.crs.is_projected:
         unit_m = float(dataset.crs.linear_units_factor[1])
-    cell_x, cell_y = abs(transform.a) * unit_m, abs(transform.e) * unit_m
+    cell_x, cell_y = float(abs(transform.a) * unit_m), float(abs(transform.e) * unit_m)
     if not math.isclose(cell_x, cell_y, rel_tol=1e-3):
         raise TerrainError(
             f"{path}: pixels of {cell_x:g} x {cell_y:g} m, expected square ones (resample it)"

@@ -133,6 +133,8 @@ def load_vehicle(
 ) -> Vehicle:
     """Vehicle from a file, or a built-in one by its bare name."""
     if str(name_or_path) == VEHICLE_DEFAULT:
-        text = resources.files("sim.vehicles").joinpath(f"{VEHICLE_DEFAULT}.yaml").read_text("utf-8")
+        text = (
+            resources.files("sim.vehicles").joinpath(f"{VEHICLE_DEFAULT}.yaml").read_text("utf-8")
+        )
         return parse_model(text, f"{VEHICLE_DEFAULT}.yaml", Vehicle, overrides)
     return load_model(name_or_path, Vehicle, overrides)

@@ -242,8 +242,9 @@ def true_limit_violation(truth: SettledState, vehicle: Vehicle) -> str | None:
     ):
         if math.degrees(angle_rad) > limit_deg:
             return f"{name} {math.degrees(angle_rad):.1f} deg over {name}_max_deg {limit_deg:g}"
-    if truth.clearance_m < limits.clearance_min_m:
-        return f"clearance {truth.clearance_m:.3f} m under clearance_min_m {limits.clearance_min_m:g}"
-    if truth.wheel_drop_m > limits.wheel_drop_max_m:
-        return f"wheel drop {truth.wheel_drop_m:.3f} m over wheel_drop_max_m {limits.wheel_drop_max_m:g}"
+    clearance_m, drop_m = truth.clearance_m, truth.wheel_drop_m
+    if clearance_m < limits.clearance_min_m:
+        return f"clearance {clearance_m:.3f} m under clearance_min_m {limits.clearance_min_m:g}"
+    if drop_m > limits.wheel_drop_max_m:
+        return f"wheel drop {drop_m:.3f} m over wheel_drop_max_m {limits.wheel_drop_max_m:g}"
     return None

@@ -50,12 +50,10 @@ typedef struct
 /**
  * Bounds at one pose.
  * @param position_m, yaw_rad  uncertainty: the rover is within this radius and yaw error of the pose
- * @param is_full  true: find certified bounds even when a limit is already exceeded; false: stop there
  */
 void nav_ace_evaluate(const nav_ace_scene_t *scene,
                       const nav_pose2_t *pose,
                       const nav_uncertainty_t *uncertainty,
-                      bool is_full,
                       nav_ace_bounds_t *bounds);
 
 /** The uncertainty after a distance along a path: grown, but never beyond its bounds. */

@@ -30,7 +30,7 @@ typedef struct
 {
     double hub_x_m[NAV_WHEELS];
     double hub_y_m[NAV_WHEELS];
-    double hub_height_m;          /* all six hubs on flat ground: the wheel radius */
+    double hub_height_m; /* all six hubs on flat ground: the wheel radius */
     double rocker_pivot_x_m;
     double rocker_pivot_height_m;
     double bogie_pivot_x_m;
@@ -48,6 +48,15 @@ void nav_vehicle_wheel_heights(const nav_vehicle_t *vehicle,
                                const double state[NAV_LINKAGE_STATES],
                                double height_m[NAV_WHEELS],
                                double jacobian[NAV_WHEELS][NAV_LINKAGE_STATES]);
+
+/**
+ * Where the wheels' lowest points are in the plane, forward and right of the ROVER origin: the hub
+ * fore and aft, the foot of the tilted wheel sideways.
+ */
+void nav_vehicle_wheel_places(const nav_vehicle_t *vehicle,
+                              const double state[NAV_LINKAGE_STATES],
+                              double forward_m[NAV_WHEELS],
+                              double right_m[NAV_WHEELS]);
 
 /**
  * The state whose wheel heights are the given ones (Newton, at most 8 steps, residual below 1e-9 m).

@@ -14,15 +14,25 @@
 #include "nav_ground.h"
 #include "nav_math.h"
 
-/* Growth is bounded by attempts: each assumes a larger range of states, and is accepted when the
- * bounds it leads to lie inside the range it assumed. */
-#define ATTEMPTS 4U
+/* Attempts to find a range of states that is consistent: first around flat standing, then each around
+ * the solution of the one before. */
+#define ATTEMPTS 6U
 #define SAMPLES_MAX 56U
 #define SAMPLE_SPACING_M 0.05
-#define GROWTH_MIN_M 0.03
+#define GROWTH_MIN_M 0.02
 #define GROWTH_MAX_M 0.8
 #define ROW_ENDS 2U
 #define WHEELS_PER_SIDE 3U
+
+/* Share of a turn in the plane that its linear formula can be wrong by, slopes up to 30 deg. */
+#define TURN_ERROR 0.2
+
+/* How far a wheel can be above or below the body's ground level, and its change per bogie angle. */
+#define WHEEL_TRAVEL_M 0.35
+#define WHEEL_SWAY 0.8
+
+/* Height of what stands in a wheel's box over the body's ground level, that leans with attitude. */
+#define WHEEL_LEAN_M 0.2
 
 /* Terrain whose foot is this far times the slope outside a box can still stand in it. */
 #define ETA_SCAN_M 1.0
@@ -32,23 +42,25 @@
 static const double CURVATURE[NAV_LINKAGE_STATES] = {0.21, 0.15, 0.29, 0.33, 3.2, 3.2};
 #define CURVATURE_CLEARANCE 0.47
 
-/** The states an attempt assumes the rover stays within, all about zero. */
+/** The states an attempt assumes the rover stays within. Bounds found from such a range that lie
+ * inside it are certified: the map from states to states then has its fixed point, the settled
+ * rover, inside (Brouwer). */
 typedef struct
 {
-    double lift_m;
-    double roll_rad;
-    double pitch_rad;
-    double rocker_rad;
-    double bogie_rad;
-    double wheel_m; /* height of a wheel above or below the plane */
+    double middle[NAV_LINKAGE_STATES];
+    double half[NAV_LINKAGE_STATES];
+    double forward_m[NAV_WHEELS]; /* places of the wheels in the middle state */
+    double right_m[NAV_WHEELS];
 } range_t;
 
-static const range_t RANGES[ATTEMPTS] = {
-    {0.06, 0.05, 0.06, 0.04, 0.12, 0.12},
-    {0.12, 0.10, 0.12, 0.08, 0.24, 0.25},
-    {0.25, 0.20, 0.24, 0.16, 0.50, 0.50},
-    {0.60, 0.40, 0.50, 0.35, 1.00, 1.00},
-};
+/* Flat standing: m, and rad for roll, pitch, rocker, bogies. */
+static const double FIRST_HALF[NAV_LINKAGE_STATES] = {0.06, 0.05, 0.06, 0.04, 0.12, 0.12};
+
+/* A new range is wider than the solution it is made from, so that it can hold the next: little at
+ * first, for tight bounds, then more, for bounds at all. */
+#define WIDENING_FIRST 1.1
+#define WIDENING_STEP 0.15
+static const double SLACK[NAV_LINKAGE_STATES] = {0.002, 0.002, 0.002, 0.002, 0.006, 0.006};
 
 /** All that stays the same during one evaluation. */
 typedef struct
@@ -121,40 +133,84 @@ static double wheel_reach_m(const view_t *view, double along_m)
     return sqrt(nav_max(squared(view->params->wheel_radius_m) - squared(along_m), 0.0));
 }
 
-/** Growth of a part at (u, v) that all parts share: uncertainty, and what slopes make of lift. */
+/** The turn in the plane that keeps a pitched rover's yaw, which is measured in the horizontal. */
+static double turn_of_pitch(const view_t *view, double pitch_rad)
+{
+    return pitch_rad * view->ground.rise_right;
+}
+
+/** In-plane place, in the plane frame, of what is at (u, v) from the origin of a state's body. */
+static nav_ground_point_t from_body(const view_t *view,
+                                    const double state[],
+                                    double u_m,
+                                    double v_m)
+{
+    const double turn = turn_of_pitch(view, state[NAV_LINKAGE_PITCH]);
+    const double above_m = state[NAV_LINKAGE_HEIGHT] / view->ground.cos_slope;
+    const nav_ground_point_t point = {
+        (above_m * view->ground.forward_up) + (u_m - (turn * v_m)),
+        (above_m * view->ground.right_up) + (v_m + (turn * u_m)),
+        0.0,
+    };
+    return point;
+}
+
+/** And back. */
+static nav_ground_point_t to_body(const view_t *view,
+                                  const double state[],
+                                  const nav_ground_point_t *point)
+{
+    const double turn = turn_of_pitch(view, state[NAV_LINKAGE_PITCH]);
+    const double above_m = state[NAV_LINKAGE_HEIGHT] / view->ground.cos_slope;
+    const double u_m = point->u_m - (above_m * view->ground.forward_up);
+    const double v_m = point->v_m - (above_m * view->ground.right_up);
+    const nav_ground_point_t seen = {u_m + (turn * v_m), v_m - (turn * u_m), point->eta_m};
+    return seen;
+}
+
+/** Growth of a part at (u, v) that all parts share: uncertainty, and what slopes make of the range. */
 static growth_t growth_common(const view_t *view, const range_t *range, double u_m, double v_m)
 {
     const double p = view->uncertainty.position_m;
-    const double rise_forward = fabs(view->ground.rise_forward);
-    const double rise_right = fabs(view->ground.rise_right);
-    /* yaw is measured in the horizontal: pitching on a cross slope turns the rover in the plane */
-    const double turn = view->uncertainty.yaw_rad + (range->pitch_rad * rise_right);
+    const double lift_m = range->half[NAV_LINKAGE_HEIGHT];
+    const double middle_turn = turn_of_pitch(view, range->middle[NAV_LINKAGE_PITCH]);
+    const double turn = view->uncertainty.yaw_rad +
+                        fabs(turn_of_pitch(view, range->half[NAV_LINKAGE_PITCH])) +
+                        (TURN_ERROR * fabs(middle_turn));
+    const double bend = 0.5 * squared(turn + fabs(middle_turn));
     const growth_t growth = {
-        p + (turn * fabs(v_m)) + (0.5 * squared(turn) * fabs(u_m)) + (range->lift_m * rise_forward),
-        p + (turn * fabs(u_m)) + (0.5 * squared(turn) * fabs(v_m)) + (range->lift_m * rise_right),
+        p + (turn * fabs(v_m)) + (bend * fabs(u_m)) + (lift_m * fabs(view->ground.rise_forward)),
+        p + (turn * fabs(u_m)) + (bend * fabs(v_m)) + (lift_m * fabs(view->ground.rise_right)),
     };
     return growth;
 }
 
-/** How far suspension angles swing a hub fore and aft. */
+/** How far the suspension swings a hub fore and aft of its place in the middle of a range. */
 static double wheel_swing_m(const nav_vehicle_t *vehicle, const range_t *range, uint32_t wheel)
 {
     const double u_m = vehicle->hub_x_m[wheel];
     const double pivot_m = vehicle->rocker_pivot_x_m;
-    const double turn_1 = range->pitch_rad + range->rocker_rad;
-    const double turn_2 = turn_1 + range->bogie_rad;
-    double swing_m = (vehicle->hub_height_m * range->pitch_rad) +
-                     ((vehicle->rocker_pivot_height_m - vehicle->hub_height_m) * range->rocker_rad) +
-                     (0.5 * fabs(pivot_m) * squared(range->pitch_rad));
+    const uint32_t bogie = (uint32_t) NAV_LINKAGE_BOGIE_LEFT + (wheel / WHEELS_PER_SIDE);
+    const double pitch = range->half[NAV_LINKAGE_PITCH];
+    const double turn_1 = pitch + range->half[NAV_LINKAGE_ROCKER];
+    const double turn_2 = turn_1 + range->half[bogie];
+    const double at_1 = fabs(range->middle[NAV_LINKAGE_PITCH]) +
+                        fabs(range->middle[NAV_LINKAGE_ROCKER]) + (0.5 * turn_1);
+    const double at_2 = at_1 + fabs(range->middle[bogie]) + (0.5 * range->half[bogie]);
+    double swing_m =
+        (vehicle->hub_height_m * pitch) +
+        ((vehicle->rocker_pivot_height_m - vehicle->hub_height_m) *
+         range->half[NAV_LINKAGE_ROCKER]) +
+        (fabs(pivot_m) * pitch * (fabs(range->middle[NAV_LINKAGE_PITCH]) + (0.5 * pitch)));
     if ((wheel % WHEELS_PER_SIDE) == 0U)
     {
-        swing_m += 0.5 * fabs(u_m - pivot_m) * squared(turn_1);
+        swing_m += fabs(u_m - pivot_m) * turn_1 * at_1;
     }
     else
     {
-        swing_m += ((vehicle->bogie_pivot_height_m - vehicle->hub_height_m) * range->bogie_rad) +
-                   (0.5 * fabs(vehicle->bogie_pivot_x_m - pivot_m) * squared(turn_1)) +
-                   (0.5 * fabs(u_m - vehicle->bogie_pivot_x_m) * squared(turn_2));
+        swing_m += ((vehicle->bogie_pivot_height_m - vehicle->hub_height_m) * range->half[bogie]) +
+                   (fabs(vehicle->bogie_pivot_x_m - pivot_m) * turn_1 * at_1) +
+                   (fabs(u_m - vehicle->bogie_pivot_x_m) * turn_2 * at_2);
     }
     return swing_m;
 }
@@ -163,14 +219,14 @@ static growth_t growth_wheel(const view_t *view, const range_t *range, uint32_t 
 {
     const double u_m = view->vehicle->hub_x_m[wheel];
     const double v_m = view->vehicle->hub_y_m[wheel];
+    const double roll = range->half[NAV_LINKAGE_ROLL];
+    const double roll_far = fabs(range->middle[NAV_LINKAGE_ROLL]) + roll;
     growth_t growth = growth_common(view, range, u_m, v_m);
-    /* a wheel this far above or below the body's ground level leans sideways with roll */
-    const double offset_m = range->lift_m + range->wheel_m + (fabs(u_m) * range->pitch_rad) +
-                            (fabs(v_m) * range->roll_rad);
-    growth.u_m = nav_clamp(
-        growth.u_m + wheel_swing_m(view->vehicle, range, wheel), GROWTH_MIN_M, GROWTH_MAX_M);
-    growth.v_m = nav_min(growth.v_m + (offset_m * range->roll_rad) +
-                             (0.5 * fabs(v_m) * squared(range->roll_rad)),
+    /* a wheel above or below the body's ground level leans sideways with roll */
+    growth.u_m = nav_clamp(growth.u_m + wheel_swing_m(view->vehicle, range, wheel), GROWTH_MIN_M,
+                           GROWTH_MAX_M);
+    growth.v_m = nav_min(growth.v_m + (WHEEL_TRAVEL_M * roll) + (fabs(v_m) * roll * roll_far) +
+                             (roll_far * WHEEL_SWAY * range->half[NAV_LINKAGE_BOGIE_LEFT]),
                          GROWTH_MAX_M);
     return growth;
 }
@@ -316,12 +372,15 @@ static interval_t wheel_bounds(const view_t *view,
                                nav_ace_bounds_t *bounds)
 {
     const growth_t growth = growth_wheel(view, range, wheel);
-    const double lean_m = range->lift_m + range->wheel_m;
+    const nav_ground_point_t at =
+        from_body(view, range->middle, range->forward_m[wheel], range->right_m[wheel]);
+    const double pitch = fabs(range->middle[NAV_LINKAGE_PITCH]) + range->half[NAV_LINKAGE_PITCH];
+    const double roll = fabs(range->middle[NAV_LINKAGE_ROLL]) + range->half[NAV_LINKAGE_ROLL];
     const nav_box_t box = {
-        view->vehicle->hub_x_m[wheel],
-        view->vehicle->hub_y_m[wheel],
-        view->params->wheel_radius_m + growth.u_m + (range->pitch_rad * lean_m),
-        (0.5 * view->params->wheel_width_m) + growth.v_m + (range->roll_rad * lean_m),
+        at.u_m,
+        at.v_m,
+        view->params->wheel_radius_m + growth.u_m + (pitch * WHEEL_LEAN_M),
+        (0.5 * view->params->wheel_width_m) + growth.v_m + (roll * WHEEL_LEAN_M),
     };
     const span_t span = wheel_span(view, &box, &growth);
     interval_t hub = {-NAV_ETA_NONE, NAV_ETA_NONE};
@@ -344,9 +403,7 @@ static interval_t wheel_bounds(const view_t *view,
 }
 
 /** Solves the linkage for the middles and spans the intervals. @return false when unsolvable */
-static bool linkage_span(const view_t *view,
-                         const interval_t hubs[NAV_WHEELS],
-                         linkage_t *linkage)
+static bool linkage_span(const view_t *view, const interval_t hubs[NAV_WHEELS], linkage_t *linkage)
 {
     double middle_m[NAV_WHEELS];
     linkage->wheel_half_max_m = 0.0;
@@ -384,8 +441,8 @@ static void attitude_bounds(const view_t *view, const linkage_t *linkage, nav_ac
     const double cp = nav_cos(pitch);
 
     /* heights of the ends of the body's unit axes; right is taken down, as roll is */
-    const double up = (-cr * sp * plane->forward_up) + (sr * plane->right_up) +
-                      (cr * cp * plane->cos_slope);
+    const double up =
+        (-cr * sp * plane->forward_up) + (sr * plane->right_up) + (cr * cp * plane->cos_slope);
     const double nose = (cp * plane->forward_up) + (sp * plane->cos_slope);
     const double right_down =
         -((sr * sp * plane->forward_up) + (cr * plane->right_up)) + (sr * cp * plane->cos_slope);
@@ -395,12 +452,12 @@ static void attitude_bounds(const view_t *view, const linkage_t *linkage, nav_ac
 
     /* uncertain yaw turns the slope under the rover; pitching on a cross slope does the same */
     const double slope = sqrt(squared(plane->rise_forward) + squared(plane->rise_right));
-    const double turn = view->uncertainty.yaw_rad +
-                        ((fabs(pitch) + pitch_half) * fabs(plane->rise_right));
+    const double turn =
+        view->uncertainty.yaw_rad + ((fabs(pitch) + pitch_half) * fabs(plane->rise_right));
     const double pitch_reach = pitch_half + (turn * slope);
     const double roll_reach =
-        (roll_half + (turn * slope) +
-         (pitch_half * fabs(nose * right_down) / squared(cos_pitch))) / cos_pitch;
+        (roll_half + (turn * slope) + (pitch_half * fabs(nose * right_down) / squared(cos_pitch))) /
+        cos_pitch;
 
     bounds->tilt_max_rad = nav_acos(up) + sqrt(squared(roll_half) + squared(pitch_half));
     bounds->pitch_min_rad = pitch_site - pitch_reach;
@@ -445,8 +502,9 @@ static void belly_spread_place(const view_t *view, const linkage_t *linkage, bel
         const double roll = linkage->inverse[NAV_LINKAGE_ROLL][wheel];
         const double pitch = linkage->inverse[NAV_LINKAGE_PITCH][wheel];
         const double half_m = linkage->wheel_half_m[wheel];
-        belly->spread_0[wheel] = half_m * ((cr * cp * height) -
-                                           (belly->lift_m * ((sr * cp * roll) + (cr * sp * pitch))));
+        belly->spread_0[wheel] =
+            half_m *
+            ((cr * cp * height) - (belly->lift_m * ((sr * cp * roll) + (cr * sp * pitch))));
         belly->spread_u[wheel] = half_m * ((cr * cp * pitch) - (sr * sp * roll));
         belly->spread_v[wheel] = -half_m * cr * roll;
         per_u += fabs(belly->spread_u[wheel]);
@@ -486,8 +544,10 @@ static double belly_spread_m(const belly_t *belly, double u_m, double v_m)
     return spread_m;
 }
 
-/** Does a point lie in the box as seen along the body's axes? */
-static bool is_under_belly(const belly_t *belly, const nav_box_t *box, const nav_ground_point_t *point)
+/** Does a point, seen from the body, lie in the box along the body's axes? */
+static bool is_under_belly(const belly_t *belly,
+                           const nav_box_t *box,
+                           const nav_ground_point_t *point)
 {
     const double up_m = point->eta_m - belly->lift_m;
     const double u_m = (belly->cos_pitch * point->u_m) + (belly->sin_pitch * up_m);
@@ -519,6 +579,7 @@ static void row_spread(const view_t *view,
 
 /** Least clearance over the cells of a row. */
 static double belly_row_m(const view_t *view,
+                          const linkage_t *linkage,
                           const belly_t *belly,
                           const nav_box_t *box,
                           int32_t row,
@@ -532,15 +593,15 @@ static double belly_row_m(const view_t *view,
     row_spread(view, belly, row, cols, spread_m);
     for (int32_t col = cols->first; col <= cols->last; col++)
     {
-        nav_ground_point_t point;
-        if (nav_ground_cell(&view->ground, row, col, &point))
+        nav_ground_point_t cell;
+        if (nav_ground_cell(&view->ground, row, col, &cell))
         {
+            const nav_ground_point_t point = to_body(view, linkage->state, &cell);
             const double chord_m = spread_m[0] + ((spread_m[1] - spread_m[0]) *
                                                   ((double) (col - cols->first) / steps));
             const double free_m =
                 (belly->at_0_m + (belly->per_u * point.u_m) + (belly->per_v * point.v_m)) -
-                (belly->per_eta * point.eta_m) - chord_m -
-                (belly->spread_eta * fabs(point.eta_m));
+                (belly->per_eta * point.eta_m) - chord_m - (belly->spread_eta * fabs(point.eta_m));
             if ((free_m < least_m) && is_under_belly(belly, box, &point))
             {
                 least_m = free_m;
@@ -565,12 +626,20 @@ static nav_box_t belly_box(const view_t *view,
     const double roll_half = linkage->half[NAV_LINKAGE_ROLL];
     const double pitch_half = linkage->half[NAV_LINKAGE_PITCH];
     const double lift_half_m = linkage->half[NAV_LINKAGE_HEIGHT];
+    const double roll_far = fabs(linkage->state[NAV_LINKAGE_ROLL]) + roll_half;
+    const double pitch_far = fabs(linkage->state[NAV_LINKAGE_PITCH]) + pitch_half;
     /* what is higher than the belly itself is refused wherever it stands */
     const double above_m = params->belly_height_m;
-    *growth = growth_common(view, range, far_m, params->belly_half_width_m);
-    growth->u_m += (pitch_half * above_m) + (lift_half_m * range->pitch_rad);
-    growth->v_m += (roll_half * above_m) + (lift_half_m * range->roll_rad) +
-                   (pitch_half * range->roll_rad * far_m);
+    range_t spanned = *range;
+    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
+    {
+        spanned.middle[k] = linkage->state[k];
+        spanned.half[k] = linkage->half[k];
+    }
+    *growth = growth_common(view, &spanned, far_m, params->belly_half_width_m);
+    growth->u_m += (pitch_half * above_m) + (lift_half_m * pitch_far);
+    growth->v_m +=
+        (roll_half * above_m) + (lift_half_m * roll_far) + (pitch_half * roll_far * far_m);
     const nav_box_t box = {
         0.5 * (params->belly_front_x_m + params->belly_rear_x_m),
         0.0,
@@ -591,14 +660,18 @@ static void belly_bounds(const view_t *view,
     growth_t growth;
     belly_t belly;
     const nav_box_t box = belly_box(view, range, linkage, &growth);
+    const nav_ground_point_t at = from_body(view, linkage->state, box.u_m, box.v_m);
     nav_box_t wide = scanned(view, &box);
     uint32_t cell_count = 0U;
     uint32_t unknown_count = 0U;
     double least_m = NAV_ETA_NONE;
 
     belly_place(view, linkage, &belly);
-    wide.half_u_m += pitch * ETA_SCAN_M;
-    wide.half_v_m += roll * ETA_SCAN_M;
+    const double turn = fabs(turn_of_pitch(view, linkage->state[NAV_LINKAGE_PITCH]));
+    wide.u_m = at.u_m;
+    wide.v_m = at.v_m;
+    wide.half_u_m += (pitch * ETA_SCAN_M) + (turn * box.half_v_m);
+    wide.half_v_m += (roll * ETA_SCAN_M) + (turn * box.half_u_m);
     const nav_columns_t rows = nav_ground_rows(&view->ground, &wide);
     for (int32_t row = rows.first; row <= rows.last; row++)
     {
@@ -609,7 +682,8 @@ static void belly_bounds(const view_t *view,
         if (cols.last >= cols.first)
         {
             cell_count += (uint32_t) ((cols.last - cols.first) + 1);
-            least_m = nav_min(least_m, belly_row_m(view, &belly, &box, row, &cols, &unknown_count));
+            least_m = nav_min(least_m,
+                              belly_row_m(view, linkage, &belly, &box, row, &cols, &unknown_count));
         }
     }
     /* the belly may stand elsewhere in its box */
@@ -649,8 +723,10 @@ static nav_reason_t refuse(const nav_params_t *params, const nav_ace_bounds_t *b
     {
         reason = NAV_REASON_ROCKER;
     }
-    else if (is_beyond(bounds->bogie_left_min_rad, bounds->bogie_left_max_rad, params->bogie_max_rad) ||
-             is_beyond(bounds->bogie_right_min_rad, bounds->bogie_right_max_rad, params->bogie_max_rad))
+    else if (is_beyond(bounds->bogie_left_min_rad, bounds->bogie_left_max_rad,
+                       params->bogie_max_rad) ||
+             is_beyond(bounds->bogie_right_min_rad, bounds->bogie_right_max_rad,
+                       params->bogie_max_rad))
     {
         reason = NAV_REASON_BOGIE;
     }
@@ -662,35 +738,52 @@ static nav_reason_t refuse(const nav_params_t *params, const nav_ace_bounds_t *b
 }
 
 /** Do the bounds lie inside the range that the growth assumed? */
-static bool is_consistent(const linkage_t *linkage,
-                          const range_t *range,
-                          const interval_t hubs[NAV_WHEELS])
+static bool is_consistent(const linkage_t *linkage, const range_t *range)
 {
-    const double limits[NAV_LINKAGE_STATES] = {range->lift_m,
-                                               range->roll_rad,
-                                               range->pitch_rad,
-                                               range->rocker_rad,
-                                               range->bogie_rad,
-                                               range->bogie_rad};
     bool is_inside = true;
-    for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
-    {
-        is_inside = is_inside && !is_beyond(hubs[wheel].low_m, hubs[wheel].high_m, range->wheel_m);
-    }
     for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
     {
-        is_inside = is_inside && ((fabs(linkage->state[k]) + linkage->half[k]) <= limits[k]);
+        is_inside = is_inside && ((fabs(linkage->state[k] - range->middle[k]) + linkage->half[k]) <=
+                                  range->half[k]);
     }
     return is_inside;
 }
 
-/** One attempt with one range. @return true when no larger range is needed */
-static bool attempt(const view_t *view, const range_t *range, nav_ace_bounds_t *bounds)
+static void range_first(const view_t *view, range_t *range)
+{
+    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
+    {
+        range->middle[k] = 0.0;
+        range->half[k] = FIRST_HALF[k];
+    }
+    nav_vehicle_wheel_places(view->vehicle, range->middle, range->forward_m, range->right_m);
+}
+
+/** The next range: around the solution, wide enough for it, and never narrower than is sensible. */
+static void range_next(const view_t *view,
+                       const linkage_t *linkage,
+                       uint32_t attempts_made,
+                       range_t *range)
+{
+    const double widening = WIDENING_FIRST + (WIDENING_STEP * (double) attempts_made);
+    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
+    {
+        range->middle[k] = linkage->state[k];
+        range->half[k] = (widening * linkage->half[k]) + SLACK[k];
+    }
+    nav_vehicle_wheel_places(view->vehicle, range->middle, range->forward_m, range->right_m);
+}
+
+/** Bounds for one range, which is moved on to the next. @return true when no other is needed */
+static bool attempt(const view_t *view,
+                    uint32_t attempts_made,
+                    range_t *range,
+                    nav_ace_bounds_t *bounds)
 {
     static const nav_ace_bounds_t NOTHING = {0};
     interval_t hubs[NAV_WHEELS];
     linkage_t linkage;
-    bool is_certified = false;
+    bool is_done = true;
 
     *bounds = NOTHING;
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
@@ -706,32 +799,31 @@ static bool attempt(const view_t *view, const range_t *range, nav_ace_bounds_t *
             suspension_bounds(&linkage, bounds);
             attitude_bounds(view, &linkage, bounds);
             belly_bounds(view, range, &linkage, bounds);
-            is_certified = is_consistent(&linkage, range, hubs);
+            is_done = is_consistent(&linkage, range);
+            bounds->is_certified = is_done ? 1U : 0U;
             bounds->reason = (uint32_t) refuse(view->params, bounds);
+            range_next(view, &linkage, attempts_made, range);
         }
     }
-    bounds->is_certified = is_certified ? 1U : 0U;
-    return is_certified || (bounds->wheel_unknown >= 1.0);
+    return is_done;
 }
 
 void nav_ace_evaluate(const nav_ace_scene_t *scene,
                       const nav_pose2_t *pose,
                       const nav_uncertainty_t *uncertainty,
-                      bool is_full,
                       nav_ace_bounds_t *bounds)
 {
-    static const nav_ace_bounds_t UNKNOWN = {.wheel_unknown = 1.0,
-                                             .belly_unknown = 1.0,
-                                             .reason = (uint32_t) NAV_REASON_UNKNOWN};
+    static const nav_ace_bounds_t UNKNOWN = {
+        .wheel_unknown = 1.0, .belly_unknown = 1.0, .reason = (uint32_t) NAV_REASON_UNKNOWN};
     view_t view = {.params = scene->params, .vehicle = scene->vehicle, .uncertainty = *uncertainty};
     bool is_done = !nav_ground_place(&view.ground, scene->surface, scene->costmap, pose);
+    range_t range;
 
     *bounds = UNKNOWN;
+    range_first(&view, &range);
     for (uint32_t k = 0U; (k < ATTEMPTS) && !is_done; k++)
     {
-        is_done = attempt(&view, &RANGES[k], bounds);
-        /* more growth only widens the bounds: a refusal stands */
-        is_done = is_done || ((bounds->reason != (uint32_t) NAV_REASON_NONE) && !is_full);
+        is_done = attempt(&view, k, &range, bounds);
     }
     if ((bounds->is_certified == 0U) && (bounds->reason == (uint32_t) NAV_REASON_NONE))
     {
@@ -748,10 +840,9 @@ nav_uncertainty_t nav_ace_grow(const nav_params_t *params,
         nav_max(uncertainty->position_m,
                 nav_min(uncertainty->position_m + (params->uncertainty_growth * distance_m),
                         params->uncertainty_position_max_m));
-    grown.yaw_rad =
-        nav_max(uncertainty->yaw_rad,
-                nav_min(uncertainty->yaw_rad +
-                            (params->uncertainty_yaw_growth_rad_per_m * distance_m),
-                        params->uncertainty_yaw_max_rad));
+    grown.yaw_rad = nav_max(
+        uncertainty->yaw_rad,
+        nav_min(uncertainty->yaw_rad + (params->uncertainty_yaw_growth_rad_per_m * distance_m),
+                params->uncertainty_yaw_max_rad));
     return grown;
 }

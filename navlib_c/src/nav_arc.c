@@ -43,8 +43,8 @@ static double distance_of_hub(const nav_hub_t *hub, double curvature_per_m)
 static double fastest_wheel_ratio(const nav_params_t *params, double curvature_per_m)
 {
     const nav_hub_t hubs[NAV_WHEELS] = {
-        {params->front_x_m, -params->front_y_m},   {params->middle_x_m, -params->middle_y_m},
-        {params->rear_x_m, -params->rear_y_m},     {params->front_x_m, params->front_y_m},
+        {params->front_x_m, -params->front_y_m},  {params->middle_x_m, -params->middle_y_m},
+        {params->rear_x_m, -params->rear_y_m},    {params->front_x_m, params->front_y_m},
         {params->middle_x_m, params->middle_y_m}, {params->rear_x_m, params->rear_y_m}};
     double ratio = 0.0;
 
@@ -57,10 +57,10 @@ static double fastest_wheel_ratio(const nav_params_t *params, double curvature_p
 
 static double largest_wheel_distance_m(const nav_params_t *params)
 {
-    const double front_m = sqrt((params->front_x_m * params->front_x_m) +
-                                (params->front_y_m * params->front_y_m));
-    const double middle_m = sqrt((params->middle_x_m * params->middle_x_m) +
-                                 (params->middle_y_m * params->middle_y_m));
+    const double front_m =
+        sqrt((params->front_x_m * params->front_x_m) + (params->front_y_m * params->front_y_m));
+    const double middle_m =
+        sqrt((params->middle_x_m * params->middle_x_m) + (params->middle_y_m * params->middle_y_m));
     const double rear_m =
         sqrt((params->rear_x_m * params->rear_x_m) + (params->rear_y_m * params->rear_y_m));
 

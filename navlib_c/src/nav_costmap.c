@@ -13,8 +13,10 @@
 
 #define NAV_SIZE ((int32_t) NAV_COSTMAP_SIZE)
 #define NAV_BLOCK ((int32_t) NAV_CELLS_PER_COST_CELL)
-#define NAV_BLOCKS ((int32_t) NAV_COSTMAP_BLOCKS)
+#define NAV_CELLS (NAV_SIZE * NAV_SIZE)
 #define NAV_SURFACE_SIZE ((int32_t) NAV_HEIGHTMAP_SIZE)
+#define NAV_SURFACE_CELLS (NAV_SURFACE_SIZE * NAV_SURFACE_SIZE)
+#define NAV_BLOCKS ((NAV_SURFACE_SIZE / NAV_BLOCK) + 1)
 #define NAV_FAILED_COUNT_MAX 65535U
 
 /* Known cells on one line leave a determinant of rounding errors only. */
@@ -53,7 +55,7 @@ static double reference_height(const nav_surface_t *surface)
     double z_m = 0.0;
     bool is_found = false;
 
-    for (int32_t cell = 0; (cell < (int32_t) NAV_HEIGHTMAP_CELLS) && (!is_found); cell++)
+    for (int32_t cell = 0; (cell < NAV_SURFACE_CELLS) && (!is_found); cell++)
     {
         is_found = is_known(surface->z_site_m[cell]);
         if (is_found)
@@ -97,9 +99,8 @@ static void add_moved(nav_moments_t *total, const nav_moments_t *part, double u,
 static void add_surface_row(const nav_window_t *window, int32_t row, nav_moments_t *blocks)
 {
     const float *z_m = &window->surface->z_site_m[row * NAV_SURFACE_SIZE];
-    const double middle = (double) (NAV_BLOCK - 1) / 2.0;
-    const double u =
-        (double) nav_wrap_index(window->surface->origin_row + row, NAV_BLOCK) - middle;
+    const double middle = ((double) NAV_BLOCK - 1.0) / 2.0;
+    const double u = (double) nav_wrap_index(window->surface->origin_row + row, NAV_BLOCK) - middle;
     int32_t in_block = nav_wrap_index(window->surface->origin_col, NAV_BLOCK);
     int32_t block = 0;
 
@@ -107,8 +108,8 @@ static void add_surface_row(const nav_window_t *window, int32_t row, nav_moments
     {
         if (is_known(z_m[col]))
         {
-            add_height(
-                &blocks[block], u, (double) in_block - middle, (double) z_m[col] - window->z_reference_m);
+            add_height(&blocks[block], u, (double) in_block - middle,
+                       (double) z_m[col] - window->z_reference_m);
         }
         in_block += 1;
         if (in_block == NAV_BLOCK)
@@ -123,8 +124,12 @@ static void sum_block_row(const nav_window_t *window, int32_t block_row, nav_mom
 {
     const int32_t first =
         ((window->first_row + block_row) * NAV_BLOCK) - window->surface->origin_row;
+    const nav_moments_t empty = {0};
 
-    (void) memset(blocks, 0, sizeof(blocks[0]) * (size_t) NAV_BLOCKS);
+    for (int32_t block = 0; block < NAV_BLOCKS; block++)
+    {
+        blocks[block] = empty;
+    }
     for (int32_t row = first; row < (first + NAV_BLOCK); row++)
     {
         if ((row >= 0) && (row < NAV_SURFACE_SIZE))
@@ -149,16 +154,18 @@ static void sum_strips(const nav_window_t *window, nav_costmap_scratch_t *scratc
             for (int32_t other = (low > 0) ? low : 0; (other <= high) && (other < NAV_BLOCKS);
                  other++)
             {
-                add_moved(
-                    &strip, &scratch->blocks[other], 0.0, (double) ((other - col) * NAV_BLOCK));
+                add_moved(&strip, &scratch->blocks[other], 0.0,
+                          ((double) other - (double) col) * (double) NAV_BLOCK);
             }
             scratch->strips[(row * NAV_BLOCKS) + col] = strip;
         }
     }
 }
 
-static nav_moments_t
-sum_patch(const nav_window_t *window, const nav_costmap_scratch_t *scratch, int32_t row, int32_t col)
+static nav_moments_t sum_patch(const nav_window_t *window,
+                               const nav_costmap_scratch_t *scratch,
+                               int32_t row,
+                               int32_t col)
 {
     const int32_t low = row - window->patch_half;
     const int32_t high = row + window->patch_half;
@@ -166,10 +173,8 @@ sum_patch(const nav_window_t *window, const nav_costmap_scratch_t *scratch, int3
 
     for (int32_t other = (low > 0) ? low : 0; (other <= high) && (other < NAV_BLOCKS); other++)
     {
-        add_moved(&patch,
-                  &scratch->strips[(other * NAV_BLOCKS) + col],
-                  (double) ((other - row) * NAV_BLOCK),
-                  0.0);
+        add_moved(&patch, &scratch->strips[(other * NAV_BLOCKS) + col],
+                  ((double) other - (double) row) * (double) NAV_BLOCK, 0.0);
     }
     return patch;
 }
@@ -253,7 +258,7 @@ static void judge_patch(nav_cost_cell_t *cell,
                         const nav_window_t *window,
                         const nav_moments_t *patch)
 {
-    const double side = (double) (((2 * window->patch_half) + 1) * NAV_BLOCK);
+    const double side = ((2.0 * (double) window->patch_half) + 1.0) * (double) NAV_BLOCK;
     nav_plane_t plane = {0.0, 0.0, 0.0, 0.0};
 
     if (patch->count < (params->costmap_patch_known_min * side * side))
@@ -326,8 +331,9 @@ static void update_marks(nav_costmap_t *map,
         {
             const double y_m = ((double) map->origin_col + (double) col + 0.5) * map->cell_m;
             nav_cost_cell_t *cell = &map->cells[(row * NAV_SIZE) + col];
+            const uint32_t age_cycles = map->cycle - cell->ace_cycle;
 
-            if ((double) (map->cycle - cell->ace_cycle) > params->ace_feedback_cycles)
+            if ((double) age_cycles > params->ace_feedback_cycles)
             {
                 open_cell(cell);
             }
@@ -350,11 +356,11 @@ static void shift_cells(nav_costmap_t *map, const nav_params_t *params, int64_t 
     const nav_cost_cell_t empty = unknown_cell(params);
     const bool is_forward = ((rows * (int64_t) NAV_SIZE) + cols) > 0;
 
-    for (int32_t step = 0; step < (int32_t) NAV_COSTMAP_CELLS; step++)
+    for (int32_t step = 0; step < NAV_CELLS; step++)
     {
-        const int32_t index = is_forward ? step : (((int32_t) NAV_COSTMAP_CELLS - 1) - step);
-        const int64_t row = (int64_t) (index / NAV_SIZE) + rows;
-        const int64_t col = (int64_t) (index % NAV_SIZE) + cols;
+        const int32_t index = is_forward ? step : ((NAV_CELLS - 1) - step);
+        const int64_t row = ((int64_t) index / NAV_SIZE) + rows;
+        const int64_t col = ((int64_t) index % NAV_SIZE) + cols;
 
         if ((row >= 0) && (row < (int64_t) NAV_SIZE) && (col >= 0) && (col < (int64_t) NAV_SIZE))
         {
@@ -367,7 +373,10 @@ static void shift_cells(nav_costmap_t *map, const nav_params_t *params, int64_t 
     }
 }
 
-static bool is_near_edge(const nav_costmap_t *map, double margin_m, double x_site_m, double y_site_m)
+static bool is_near_edge(const nav_costmap_t *map,
+                         double margin_m,
+                         double x_site_m,
+                         double y_site_m)
 {
     const double south_m = x_site_m - ((double) map->origin_row * map->cell_m);
     const double west_m = y_site_m - ((double) map->origin_col * map->cell_m);
@@ -379,8 +388,8 @@ static bool is_near_edge(const nav_costmap_t *map, double margin_m, double x_sit
 }
 
 /* @return false when the position has no global index */
-static bool
-find_global(const nav_costmap_t *map, double x_site_m, double y_site_m, int32_t *row, int32_t *col)
+static bool find_global(
+    const nav_costmap_t *map, double x_site_m, double y_site_m, int32_t *row, int32_t *col)
 {
     const double cells_per_m = 1.0 / map->cell_m;
     const bool is_row_valid = nav_floor_index(x_site_m * cells_per_m, row);
@@ -395,13 +404,16 @@ void nav_costmap_init(nav_costmap_t *map, const nav_params_t *params)
 
     (void) memset(map, 0, sizeof(*map));
     map->cell_m = params->heightmap_cell_m * (double) NAV_CELLS_PER_COST_CELL;
-    for (int32_t cell = 0; cell < (int32_t) NAV_COSTMAP_CELLS; cell++)
+    for (int32_t cell = 0; cell < NAV_CELLS; cell++)
     {
         map->cells[cell] = empty;
     }
 }
 
-bool nav_costmap_recenter(nav_costmap_t *map, const nav_params_t *params, double x_site_m, double y_site_m)
+bool nav_costmap_recenter(nav_costmap_t *map,
+                          const nav_params_t *params,
+                          double x_site_m,
+                          double y_site_m)
 {
     int32_t row = 0;
     int32_t col = 0;
@@ -416,9 +428,7 @@ bool nav_costmap_recenter(nav_costmap_t *map, const nav_params_t *params, double
 
         if (map->is_placed != 0U)
         {
-            shift_cells(map,
-                        params,
-                        (int64_t) origin_row - (int64_t) map->origin_row,
+            shift_cells(map, params, (int64_t) origin_row - (int64_t) map->origin_row,
                         (int64_t) origin_col - (int64_t) map->origin_col);
         }
         map->origin_row = origin_row;
@@ -460,7 +470,9 @@ bool nav_costmap_find(const nav_costmap_t *map, double x_site_m, double y_site_m
     const int64_t col = (int64_t) global_col - (int64_t) map->origin_col;
     const bool is_inside = is_found && (row >= 0) && (row < size) && (col >= 0) && (col < size);
 
-    *index = is_inside ? (uint32_t) ((row * size) + col) : 0U;
+    const int64_t found = (row * size) + col;
+
+    *index = is_inside ? (uint32_t) found : 0U;
     return is_inside;
 }
 
@@ -516,7 +528,7 @@ void nav_costmap_feedback(nav_costmap_t *map, double x_site_m, double y_site_m, 
 
 void nav_costmap_clear_feedback(nav_costmap_t *map)
 {
-    for (int32_t cell = 0; cell < (int32_t) NAV_COSTMAP_CELLS; cell++)
+    for (int32_t cell = 0; cell < NAV_CELLS; cell++)
     {
         open_cell(&map->cells[cell]);
     }

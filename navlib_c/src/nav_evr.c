@@ -10,7 +10,8 @@
 
 const nav_evr_def_t nav_evr_defs[NAV_EVR_COUNT] = {NAV_EVR_TABLE(NAV_EVR_DEF)};
 
-void nav_evr_report(double time_s, nav_evr_id_t id, double arg0, double arg1, double arg2, double arg3)
+void nav_evr_report(
+    double time_s, nav_evr_id_t id, double arg0, double arg1, double arg2, double arg3)
 {
     const double args[NAV_EVR_ARGS_MAX] = {arg0, arg1, arg2, arg3};
     nav_evr_t evr = {0};

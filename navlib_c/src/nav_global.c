@@ -6,12 +6,12 @@
 #include "nav_global.h"
 
 #include <math.h>
-#include <string.h>
 
+#include "nav_guard.h"
 #include "nav_math.h"
 
 #define NAV_SIZE ((int32_t) NAV_COSTMAP_SIZE)
-#define NAV_CELLS ((uint32_t) NAV_COSTMAP_CELLS)
+#define NAV_CELLS ((uint32_t) NAV_COSTMAP_SIZE * (uint32_t) NAV_COSTMAP_SIZE)
 #define NAV_NEIGHBORS 8U
 #define NAV_SQRT_2 1.41421356237309504880169
 
@@ -26,8 +26,8 @@ typedef struct
 
 static nav_step_t step_to(uint32_t neighbor)
 {
-    static const nav_step_t steps[NAV_NEIGHBORS] = {
-        {-1, -1}, {-1, 0}, {-1, 1}, {0, -1}, {0, 1}, {1, -1}, {1, 0}, {1, 1}};
+    static const nav_step_t steps[NAV_NEIGHBORS] = {{-1, -1}, {-1, 0}, {-1, 1}, {0, -1},
+                                                    {0, 1},   {1, -1}, {1, 0},  {1, 1}};
 
     return steps[neighbor];
 }
@@ -57,7 +57,7 @@ static void sift_up(nav_global_t *global, uint32_t cell)
     uint32_t place = global->heap_place[cell];
     bool is_placed = false;
 
-    for (uint32_t level = 0U; (level < NAV_HEAP_LEVELS_MAX) && (!is_placed); level++)
+    for (uint32_t level = 0U; NAV_ALWAYS(level < NAV_HEAP_LEVELS_MAX) && (!is_placed); level++)
     {
         is_placed = (place == 1U) || is_before(global, global->heap[(place / 2U) - 1U], cell);
         if (!is_placed)
@@ -86,12 +86,12 @@ static void sift_down_from_top(nav_global_t *global, uint32_t cell)
     uint32_t place = 1U;
     bool is_placed = false;
 
-    for (uint32_t level = 0U; (level < NAV_HEAP_LEVELS_MAX) && (!is_placed); level++)
+    for (uint32_t level = 0U; NAV_ALWAYS(level < NAV_HEAP_LEVELS_MAX) && (!is_placed); level++)
     {
         const uint32_t child = first_child(global, place);
 
-        is_placed = (child > global->heap_count) ||
-                    is_before(global, cell, global->heap[child - 1U]);
+        is_placed =
+            (child > global->heap_count) || is_before(global, cell, global->heap[child - 1U]);
         if (!is_placed)
         {
             put(global, place, global->heap[child - 1U]);
@@ -131,7 +131,10 @@ static void lower(nav_global_t *global, uint32_t cell, double cost_s)
 }
 
 /* @return whether one can go to the neighbour, and which cell it is */
-static bool find_neighbor(const nav_global_t *global, uint32_t cell, nav_step_t step, uint32_t *neighbor)
+static bool find_neighbor(const nav_global_t *global,
+                          uint32_t cell,
+                          nav_step_t step,
+                          uint32_t *neighbor)
 {
     const int32_t row = (int32_t) cell / NAV_SIZE;
     const int32_t col = (int32_t) cell % NAV_SIZE;
@@ -142,18 +145,23 @@ static bool find_neighbor(const nav_global_t *global, uint32_t cell, nav_step_t 
     *neighbor = cell;
     if (is_open)
     {
-        const uint32_t beside_row = (uint32_t) ((row * NAV_SIZE) + to_col);
-        const uint32_t beside_col = (uint32_t) ((to_row * NAV_SIZE) + col);
+        const int32_t beside_row = (row * NAV_SIZE) + to_col;
+        const int32_t beside_col = (to_row * NAV_SIZE) + col;
+        const int32_t to_cell = (to_row * NAV_SIZE) + to_col;
 
-        *neighbor = (uint32_t) ((to_row * NAV_SIZE) + to_col);
+        *neighbor = (uint32_t) to_cell;
         /* no squeezing through between two blocked cells that touch at a corner */
-        is_open = (!is_blocked(global, *neighbor)) &&
-                  (!(is_blocked(global, beside_row) && is_blocked(global, beside_col)));
+        is_open =
+            (!is_blocked(global, *neighbor)) && (!(is_blocked(global, (uint32_t) beside_row) &&
+                                                   is_blocked(global, (uint32_t) beside_col)));
     }
     return is_open;
 }
 
-static double edge_cost_s(const nav_global_t *global, uint32_t cell, uint32_t neighbor, double length_m)
+static double edge_cost_s(const nav_global_t *global,
+                          uint32_t cell,
+                          uint32_t neighbor,
+                          double length_m)
 {
     return length_m * ((global->cost_s_per_m[cell] + global->cost_s_per_m[neighbor]) * 0.5);
 }
@@ -176,8 +184,7 @@ static void relax_neighbors(nav_global_t *global, uint32_t cell, double cell_m)
         {
             const double length_m = step_length_m(step, cell_m);
 
-            lower(global,
-                  neighbor,
+            lower(global, neighbor,
                   global->cost_to_go_s[cell] + edge_cost_s(global, cell, neighbor, length_m));
         }
     }
@@ -185,17 +192,19 @@ static void relax_neighbors(nav_global_t *global, uint32_t cell, double cell_m)
 
 static nav_waydisc_t center_of_cell(const nav_costmap_t *map, uint32_t cell)
 {
-    const double row = (double) ((int32_t) cell / NAV_SIZE);
-    const double col = (double) ((int32_t) cell % NAV_SIZE);
-    const nav_waydisc_t center = {((double) map->origin_row + row + 0.5) * map->cell_m,
-                                  ((double) map->origin_col + col + 0.5) * map->cell_m,
+    const int32_t row = (int32_t) cell / NAV_SIZE;
+    const int32_t col = (int32_t) cell % NAV_SIZE;
+    const nav_waydisc_t center = {((double) map->origin_row + (double) row + 0.5) * map->cell_m,
+                                  ((double) map->origin_col + (double) col + 0.5) * map->cell_m,
                                   0.0};
 
     return center;
 }
 
-static double
-distance_to_cell_m(const nav_costmap_t *map, uint32_t cell, double x_site_m, double y_site_m)
+static double distance_to_cell_m(const nav_costmap_t *map,
+                                 uint32_t cell,
+                                 double x_site_m,
+                                 double y_site_m)
 {
     const nav_waydisc_t center = center_of_cell(map, cell);
     const double dx = center.x_site_m - x_site_m;
@@ -252,8 +261,7 @@ static void seed_inside(nav_global_t *global,
     {
         if (!is_blocked(global, cell))
         {
-            const double distance_m =
-                distance_to_cell_m(map, cell, goal->x_site_m, goal->y_site_m);
+            const double distance_m = distance_to_cell_m(map, cell, goal->x_site_m, goal->y_site_m);
 
             if ((cell == goal_cell) || (distance_m <= goal->radius_m))
             {
@@ -295,21 +303,19 @@ static void seed_outside(nav_global_t *global,
 
         if (is_facing && (!is_blocked(global, cell)))
         {
-            lower(global,
-                  cell,
+            lower(global, cell,
                   distance_to_cell_m(map, cell, goal->x_site_m, goal->y_site_m) *
                       unknown_cost_s_per_m(params));
         }
     }
 }
 
-/* The neighbour through which a cell reaches the goal; the cell itself when it is a seed. */
+/* The first neighbour through which a cell reaches the goal; the cell itself when it is a seed. */
 static uint32_t next_cell(const nav_global_t *global, uint32_t cell, double cell_m)
 {
-    double least_s = global->cost_to_go_s[cell];
     uint32_t next = cell;
 
-    for (uint32_t index = 0U; index < NAV_NEIGHBORS; index++)
+    for (uint32_t index = 0U; (index < NAV_NEIGHBORS) && (next == cell); index++)
     {
         const nav_step_t step = step_to(index);
         uint32_t neighbor = 0U;
@@ -317,12 +323,12 @@ static uint32_t next_cell(const nav_global_t *global, uint32_t cell, double cell
         if (find_neighbor(global, cell, step, &neighbor))
         {
             const double length_m = step_length_m(step, cell_m);
-            const double cost_s = global->cost_to_go_s[neighbor] +
-                                  edge_cost_s(global, neighbor, cell, length_m);
+            const double cost_s =
+                global->cost_to_go_s[neighbor] + edge_cost_s(global, neighbor, cell, length_m);
 
-            if ((cost_s < least_s) || ((cost_s <= least_s) && (next == cell)))
+            /* the plan made the cell's cost by this very sum: it is met to the last bit */
+            if (cost_s <= global->cost_to_go_s[cell])
             {
-                least_s = cost_s;
                 next = neighbor;
             }
         }
@@ -347,9 +353,8 @@ static double least_over_neighbors_s(const nav_global_t *global,
         {
             const double way_m = distance_to_cell_m(map, neighbor, x_site_m, y_site_m);
 
-            least_s = nav_min(least_s,
-                              global->cost_to_go_s[neighbor] +
-                                  edge_cost_s(global, cell, neighbor, way_m));
+            least_s = nav_min(least_s, global->cost_to_go_s[neighbor] +
+                                           edge_cost_s(global, cell, neighbor, way_m));
         }
     }
     return nav_min(least_s, NAV_COST_INFINITE);
@@ -397,8 +402,8 @@ double nav_global_cost_to_go_s(const nav_global_t *global,
         const double dx = goal->x_site_m - x_site_m;
         const double dy = goal->y_site_m - y_site_m;
 
-        cost_s = nav_min(sqrt((dx * dx) + (dy * dy)) * unknown_cost_s_per_m(params),
-                         NAV_COST_INFINITE);
+        cost_s =
+            nav_min(sqrt((dx * dx) + (dy * dy)) * unknown_cost_s_per_m(params), NAV_COST_INFINITE);
     }
     else if (!is_blocked(global, cell))
     {
@@ -423,7 +428,8 @@ uint32_t nav_global_descend(const nav_global_t *global,
     bool is_going = nav_costmap_find(map, x_site_m, y_site_m, &cell) &&
                     (global->cost_to_go_s[cell] < NAV_COST_INFINITE);
 
-    for (uint32_t step = 0U; (step < NAV_CELLS) && is_going && (point_count < capacity); step++)
+    for (uint32_t step = 0U; NAV_ALWAYS(step < NAV_CELLS) && is_going && (point_count < capacity);
+         step++)
     {
         const nav_waydisc_t center = center_of_cell(map, cell);
         const uint32_t next = next_cell(global, cell, map->cell_m);

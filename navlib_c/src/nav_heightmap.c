@@ -31,7 +31,7 @@ typedef struct
 typedef struct
 {
     double z_sum_m;
-    uint32_t known_count;
+    double known_count;
 } nav_column_t;
 
 static nav_rotation_t rotation_of_pose(const nav_pose_t *pose)
@@ -59,8 +59,7 @@ static double rotated(const nav_point_t *point, const double row[3])
 
 static nav_axis_t axis_from(int32_t origin)
 {
-    const nav_axis_t axis = {(double) origin,
-                             (double) origin + (double) NAV_HEIGHTMAP_SIZE,
+    const nav_axis_t axis = {(double) origin, (double) origin + (double) NAV_HEIGHTMAP_SIZE,
                              nav_wrap_index(origin, NAV_SIZE) - origin};
 
     return axis;
@@ -102,7 +101,7 @@ static uint32_t add_to_cell(nav_height_cell_t *cell, double z_m, float time_s, u
 
 static void clear_rows(nav_heightmap_t *map, int32_t first_row, int32_t row_count)
 {
-    for (int32_t offset = 0; (offset < row_count) && (offset < NAV_SIZE); offset++)
+    for (int32_t offset = 0; (offset < NAV_SIZE) && (offset < row_count); offset++)
     {
         const int32_t row = nav_wrap_index(first_row + offset, NAV_SIZE);
 
@@ -112,7 +111,7 @@ static void clear_rows(nav_heightmap_t *map, int32_t first_row, int32_t row_coun
 
 static void clear_cols(nav_heightmap_t *map, int32_t first_col, int32_t col_count)
 {
-    for (int32_t offset = 0; (offset < col_count) && (offset < NAV_SIZE); offset++)
+    for (int32_t offset = 0; (offset < NAV_SIZE) && (offset < col_count); offset++)
     {
         const int32_t col = nav_wrap_index(first_col + offset, NAV_SIZE);
 
@@ -181,15 +180,18 @@ static void add_height(nav_column_t *column, float z_m)
     if (z_m < NAV_SURFACE_UNKNOWN_M)
     {
         column->z_sum_m += (double) z_m;
-        column->known_count += 1U;
+        column->known_count += 1.0;
     }
 }
 
 /* Heights south, at and north of a cell; a height filled in before does not count. */
-static nav_column_t column_at(const float *z_site_m, const uint8_t *is_filled, int32_t row, int32_t col)
+static nav_column_t column_at(const float *z_site_m,
+                              const uint8_t *is_filled,
+                              int32_t row,
+                              int32_t col)
 {
     const int32_t index = (row * NAV_SIZE) + col;
-    nav_column_t column = {0.0, 0U};
+    nav_column_t column = {0.0, 0.0};
 
     if (col < NAV_SIZE)
     {
@@ -209,20 +211,21 @@ static nav_column_t column_at(const float *z_site_m, const uint8_t *is_filled, i
 /* is_filled tells of the row to the south, and of this row west of where the work has come. */
 static void fill_row(float *z_site_m, uint8_t *is_filled, int32_t row, double neighbors_min)
 {
-    nav_column_t west = {0.0, 0U};
+    nav_column_t west = {0.0, 0.0};
     nav_column_t here = column_at(z_site_m, is_filled, row, 0);
 
     for (int32_t col = 0; col < NAV_SIZE; col++)
     {
         const nav_column_t east = column_at(z_site_m, is_filled, row, col + 1);
-        const double known_count =
-            (double) (west.known_count + here.known_count + east.known_count);
+        const double known_count = west.known_count + here.known_count + east.known_count;
         float *z_m = &z_site_m[(row * NAV_SIZE) + col];
 
         is_filled[col] = 0U;
         if ((*z_m >= NAV_SURFACE_UNKNOWN_M) && (known_count >= neighbors_min))
         {
-            *z_m = (float) ((west.z_sum_m + here.z_sum_m + east.z_sum_m) / known_count);
+            const double mean_m = (west.z_sum_m + here.z_sum_m + east.z_sum_m) / known_count;
+
+            *z_m = (float) mean_m;
             is_filled[col] = 1U;
         }
         west = here;
@@ -252,11 +255,9 @@ bool nav_heightmap_center(nav_heightmap_t *map, double x_site_m, double y_site_m
 
         if (map->is_placed != 0U)
         {
-            clear_rows(map,
-                       first_leaving(map->origin_row, origin_row),
+            clear_rows(map, first_leaving(map->origin_row, origin_row),
                        leaving_count(map->origin_row, origin_row));
-            clear_cols(map,
-                       first_leaving(map->origin_col, origin_col),
+            clear_cols(map, first_leaving(map->origin_col, origin_col),
                        leaving_count(map->origin_col, origin_col));
         }
         map->origin_row = origin_row;
@@ -273,13 +274,14 @@ nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
                                 const nav_point_t *points,
                                 uint32_t point_count)
 {
-    const nav_rotation_t rotation = rotation_of_pose(pose);
     const nav_axis_t rows = axis_from(map->origin_row);
     const nav_axis_t cols = axis_from(map->origin_col);
     const double cells_per_m = 1.0 / map->cell_m;
     const float image_time_s = (float) time_s;
     nav_merge_t merge = {0U, 0U};
+    nav_rotation_t rotation;
 
+    rotation = rotation_of_pose(pose);
     for (uint32_t point = 0U; (point < point_count) && (point < (uint32_t) NAV_CHUNK_POINTS_MAX);
          point++)
     {
@@ -289,7 +291,8 @@ nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
         if ((row >= rows.low) && (row < rows.high) && (col >= cols.low) && (col < cols.high))
         {
             const double z_m = pose->z_site_m + rotated(&points[point], rotation.r[2]);
-            const int32_t index = (storage_index(&rows, row) * NAV_SIZE) + storage_index(&cols, col);
+            const int32_t index =
+                (storage_index(&rows, row) * NAV_SIZE) + storage_index(&cols, col);
 
             merge.merged_count += add_to_cell(&map->cells[index], z_m, image_time_s, image_id);
         }
@@ -306,7 +309,7 @@ void nav_heightmap_surface(const nav_heightmap_t *map,
                            double time_s,
                            nav_surface_t *surface)
 {
-    uint8_t is_filled[NAV_HEIGHTMAP_SIZE] = {0U};
+    uint8_t is_filled[NAV_HEIGHTMAP_SIZE] = {0};
 
     surface->time_s = time_s;
     surface->cell_m = map->cell_m;

@@ -23,8 +23,8 @@
 
 /** Size of a record that ends after the used entries of its last field. */
 #define TRIMMED(type, last, count, max)                                                            \
-    ((uint32_t) (offsetof(type, last) +                                                            \
-                 (sizeof(((type *) NULL)->last[0]) * (size_t) (((count) < (max)) ? (count) : (max)))))
+    ((uint32_t) (offsetof(type, last) + (sizeof(((type *) NULL)->last[0]) *                        \
+                                         (size_t) (((count) < (max)) ? (count) : (max)))))
 
 static bool is_within(double x, double limit)
 {
@@ -170,12 +170,8 @@ nav_status_t nav_init(nav_ctx_t *ctx, const nav_init_in_t *in, nav_init_out_t *o
         }
         else if (refused < (uint32_t) NAV_PARAM_COUNT)
         {
-            nav_evr_report(time_s,
-                           NAV_EVR_PARAMETER_REFUSED,
-                           (double) refused,
-                           report_time_s(in->params[refused]),
-                           0.0,
-                           0.0);
+            nav_evr_report(time_s, NAV_EVR_PARAMETER_REFUSED, (double) refused,
+                           report_time_s(in->params[refused]), 0.0, 0.0);
         }
         else
         {
@@ -227,9 +223,7 @@ nav_status_t nav_set_kioz(nav_ctx_t *ctx, const nav_set_kioz_in_t *in, nav_set_k
         const double time_s = report_time_s(in->time_s);
         uint32_t refused = in->zone_count;
         (void) memset(out, 0, sizeof(*out));
-        send(NAV_DP_SET_KIOZ_IN,
-             time_s,
-             in,
+        send(NAV_DP_SET_KIOZ_IN, time_s, in,
              TRIMMED(nav_set_kioz_in_t, zones, in->zone_count, (uint32_t) NAV_ZONES_MAX));
         status = check_set_kioz(ctx, in);
         if (status == NAV_OK)
@@ -244,12 +238,9 @@ nav_status_t nav_set_kioz(nav_ctx_t *ctx, const nav_set_kioz_in_t *in, nav_set_k
         {
             nav_kioz_set(&ctx->kioz, in->zones, in->zone_count);
             ctx->time_s = in->time_s;
-            nav_evr_report(time_s,
-                           NAV_EVR_ZONES_SET,
+            nav_evr_report(time_s, NAV_EVR_ZONES_SET,
                            (double) (ctx->kioz.zone_count - ctx->kioz.keep_in_count),
-                           (double) ctx->kioz.keep_in_count,
-                           0.0,
-                           0.0);
+                           (double) ctx->kioz.keep_in_count, 0.0, 0.0);
         }
         report_refusal(time_s, NAV_DP_SET_KIOZ_IN, status);
         out->status = (uint32_t) status;
@@ -279,8 +270,8 @@ static nav_status_t check_sequence(const nav_ctx_t *ctx, const nav_process_dispa
     const bool is_next = (ctx->chunk_next > 0U) && (in->image_id == ctx->image_id) &&
                          (in->chunk_index == ctx->chunk_next) &&
                          (in->chunk_count == ctx->chunk_count);
-    const bool is_new = (in->chunk_index == 0U) &&
-                        ((ctx->is_mapped == 0U) || (in->image_id != ctx->image_id));
+    const bool is_new =
+        (in->chunk_index == 0U) && ((ctx->is_mapped == 0U) || (in->image_id != ctx->image_id));
     return (is_next || is_new) ? NAV_OK : NAV_ORDER;
 }
 
@@ -317,8 +308,8 @@ static void merge_chunk(nav_ctx_t *ctx,
                         nav_process_disparity_out_t *out)
 {
     (void) nav_heightmap_center(&ctx->heightmap, in->pose.x_site_m, in->pose.y_site_m);
-    const nav_merge_t merge = nav_heightmap_merge(
-        &ctx->heightmap, &in->pose, in->time_s, in->image_id, in->points, in->point_count);
+    const nav_merge_t merge = nav_heightmap_merge(&ctx->heightmap, &in->pose, in->time_s,
+                                                  in->image_id, in->points, in->point_count);
     out->merged_count = merge.merged_count;
     out->outside_count = merge.outside_count;
     ctx->is_mapped = 1U;
@@ -336,23 +327,15 @@ nav_status_t nav_process_disparity(nav_ctx_t *ctx,
     {
         const double time_s = report_time_s(in->time_s);
         (void) memset(out, 0, sizeof(*out));
-        send(NAV_DP_PROCESS_DISPARITY_IN,
-             time_s,
-             in,
-             TRIMMED(nav_process_disparity_in_t,
-                     points,
-                     in->point_count,
+        send(NAV_DP_PROCESS_DISPARITY_IN, time_s, in,
+             TRIMMED(nav_process_disparity_in_t, points, in->point_count,
                      (uint32_t) NAV_CHUNK_POINTS_MAX));
         status = check_process_disparity(ctx, in);
         if (status == NAV_OK)
         {
             merge_chunk(ctx, in, out);
-            nav_evr_report(time_s,
-                           NAV_EVR_CLOUD_MERGED,
-                           (double) in->image_id,
-                           (double) out->merged_count,
-                           (double) out->outside_count,
-                           0.0);
+            nav_evr_report(time_s, NAV_EVR_CLOUD_MERGED, (double) in->image_id,
+                           (double) out->merged_count, (double) out->outside_count, 0.0);
         }
         report_refusal(time_s, NAV_DP_PROCESS_DISPARITY_IN, status);
         out->status = (uint32_t) status;
@@ -392,8 +375,8 @@ static void analyze(nav_ctx_t *ctx,
     (void) nav_heightmap_center(&ctx->heightmap, x_m, y_m);
     nav_heightmap_surface(&ctx->heightmap, &ctx->params, in->time_s, &ctx->surface);
     out->is_recentered = nav_costmap_recenter(&ctx->costmap, &ctx->params, x_m, y_m) ? 1U : 0U;
-    nav_costmap_update(
-        &ctx->costmap, &ctx->scratch, &ctx->params, &ctx->surface, &ctx->kioz, in->global_position_m);
+    nav_costmap_update(&ctx->costmap, &ctx->scratch, &ctx->params, &ctx->surface, &ctx->kioz,
+                       in->global_position_m);
     ctx->is_analyzed = 1U;
 
     for (uint32_t k = 0U; k < (uint32_t) NAV_COSTMAP_CELLS; k++)
@@ -410,26 +393,20 @@ static void analyze(nav_ctx_t *ctx,
     out->costmap_min_y_site_m = (double) ctx->costmap.origin_col * ctx->costmap.cell_m;
 }
 
-static void report_analysis(const nav_ctx_t *ctx, double time_s, const nav_analyze_terrain_out_t *out)
+static void report_analysis(const nav_ctx_t *ctx,
+                            double time_s,
+                            const nav_analyze_terrain_out_t *out)
 {
     const uint32_t infinite =
         (uint32_t) NAV_COSTMAP_CELLS - out->infinite[(uint32_t) NAV_REASON_NONE];
     if (out->is_recentered != 0U)
     {
         const double half_m = 0.5 * (double) NAV_COSTMAP_SIZE * ctx->costmap.cell_m;
-        nav_evr_report(time_s,
-                       NAV_EVR_COSTMAP_RECENTERED,
-                       out->costmap_min_x_site_m + half_m,
-                       out->costmap_min_y_site_m + half_m,
-                       0.0,
-                       0.0);
+        nav_evr_report(time_s, NAV_EVR_COSTMAP_RECENTERED, out->costmap_min_x_site_m + half_m,
+                       out->costmap_min_y_site_m + half_m, 0.0, 0.0);
     }
-    nav_evr_report(time_s,
-                   NAV_EVR_TERRAIN_ANALYZED,
-                   (double) out->known_count,
-                   (double) infinite,
-                   0.0,
-                   0.0);
+    nav_evr_report(time_s, NAV_EVR_TERRAIN_ANALYZED, (double) out->known_count, (double) infinite,
+                   0.0, 0.0);
     if (ctx->params.product_level >= 2.0)
     {
         send(NAV_DP_SURFACE, time_s, &ctx->surface, (uint32_t) sizeof(ctx->surface));
@@ -506,27 +483,18 @@ static void report_selection(const nav_ctx_t *ctx, double time_s, const nav_sele
 {
     if (out->rejections[(uint32_t) NAV_REASON_BUDGET] > 0U)
     {
-        nav_evr_report(
-            time_s, NAV_EVR_BUDGET_USED, (double) out->ace_evaluations, 0.0, 0.0, 0.0);
+        nav_evr_report(time_s, NAV_EVR_BUDGET_USED, (double) out->ace_evaluations, 0.0, 0.0, 0.0);
     }
     if (out->status == (uint32_t) NAV_OK)
     {
-        nav_evr_report(time_s,
-                       NAV_EVR_ARC_SELECTED,
-                       out->arc.length_m,
-                       out->arc.heading_change_rad,
-                       out->path_cost_s,
-                       (double) out->ace_evaluations);
+        nav_evr_report(time_s, NAV_EVR_ARC_SELECTED, out->arc.length_m, out->arc.heading_change_rad,
+                       out->path_cost_s, (double) out->ace_evaluations);
     }
     else
     {
         const uint32_t main = main_rejection(out);
-        nav_evr_report(time_s,
-                       NAV_EVR_NO_PATH,
-                       (double) NAV_TREE_PATHS,
-                       (double) main,
-                       (double) out->rejections[main],
-                       0.0);
+        nav_evr_report(time_s, NAV_EVR_NO_PATH, (double) NAV_TREE_PATHS, (double) main,
+                       (double) out->rejections[main], 0.0);
     }
     if (ctx->params.product_level >= 1.0)
     {
@@ -544,8 +512,8 @@ static nav_status_t select_arc(nav_ctx_t *ctx,
                                const nav_select_arc_in_t *in,
                                nav_select_arc_out_t *out)
 {
-    const nav_tree_scene_t scene = {
-        ace_scene(ctx), &ctx->kioz, &ctx->global, &ctx->tree_shapes, &ctx->costmap};
+    const nav_tree_scene_t scene = {ace_scene(ctx), &ctx->kioz, &ctx->global, &ctx->tree_shapes,
+                                    &ctx->costmap};
     const bool use_terrain = in->mode == (uint32_t) NAV_MODE_AVOID_ALL;
     const bool use_zones = use_terrain || (in->mode == (uint32_t) NAV_MODE_AVOID_KOZ);
     ctx->time_s = in->time_s;
@@ -559,7 +527,9 @@ static nav_status_t select_arc(nav_ctx_t *ctx,
     return (nav_status_t) out->status;
 }
 
-nav_status_t nav_select_arc(nav_ctx_t *ctx, const nav_select_arc_in_t *in, nav_select_arc_out_t *out)
+nav_status_t nav_select_arc(nav_ctx_t *ctx,
+                            const nav_select_arc_in_t *in,
+                            nav_select_arc_out_t *out)
 {
     nav_status_t status = check_pointers(ctx, in, out);
     if (status == NAV_OK)
@@ -575,12 +545,8 @@ nav_status_t nav_select_arc(nav_ctx_t *ctx, const nav_select_arc_in_t *in, nav_s
             report_selection(ctx, time_s, out);
         }
         out->status = (uint32_t) status;
-        send(NAV_DP_SELECT_ARC_OUT,
-             time_s,
-             out,
-             TRIMMED(nav_select_arc_out_t,
-                     global_points,
-                     out->global_point_count,
+        send(NAV_DP_SELECT_ARC_OUT, time_s, out,
+             TRIMMED(nav_select_arc_out_t, global_points, out->global_point_count,
                      (uint32_t) NAV_GLOBAL_POINTS_MAX));
     }
     return status;
@@ -616,12 +582,12 @@ static nav_reason_t evaluate_pose(const nav_ctx_t *ctx,
                                   nav_ace_bounds_t *bounds)
 {
     const nav_ace_scene_t scene = ace_scene(ctx);
-    const bool test_terrain = (in->mode == (uint32_t) NAV_MODE_GUARDED) ||
-                              (in->mode == (uint32_t) NAV_MODE_AVOID_ALL);
+    const bool test_terrain =
+        (in->mode == (uint32_t) NAV_MODE_GUARDED) || (in->mode == (uint32_t) NAV_MODE_AVOID_ALL);
     const nav_uncertainty_t grown = nav_ace_grow(&ctx->params, &in->uncertainty, distance_m);
     nav_reason_t reason = NAV_REASON_NONE;
 
-    nav_ace_evaluate(&scene, pose, &grown, true, bounds);
+    nav_ace_evaluate(&scene, pose, &grown, bounds);
     if (nav_kioz_forbids(&ctx->kioz, pose->x_m, pose->y_m, in->uncertainty.global_position_m))
     {
         reason = NAV_REASON_KIOZ;
@@ -680,21 +646,15 @@ nav_status_t nav_evaluate_arc(nav_ctx_t *ctx,
             evaluate_arc(ctx, in, out);
             if (out->is_safe == 0U)
             {
-                nav_evr_report(time_s,
-                               NAV_EVR_ARC_UNSAFE,
-                               out->failing_at,
-                               (double) out->failing_index,
-                               (double) out->reason,
-                               0.0);
+                nav_evr_report(time_s, NAV_EVR_ARC_UNSAFE, out->failing_at,
+                               (double) out->failing_index, (double) out->reason, 0.0);
             }
         }
         report_refusal(time_s, NAV_DP_EVALUATE_ARC_IN, status);
         out->status = (uint32_t) status;
-        send(NAV_DP_EVALUATE_ARC_OUT,
-             time_s,
-             out,
-             TRIMMED(
-                 nav_evaluate_arc_out_t, bounds, out->pose_count, (uint32_t) NAV_ARC_POSES_MAX));
+        send(
+            NAV_DP_EVALUATE_ARC_OUT, time_s, out,
+            TRIMMED(nav_evaluate_arc_out_t, bounds, out->pose_count, (uint32_t) NAV_ARC_POSES_MAX));
     }
     return status;
 }

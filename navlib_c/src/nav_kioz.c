@@ -45,9 +45,9 @@ static double longest_side_m(const nav_zone_t *zone)
     {
         const uint32_t next = (corner + 1U) % NAV_ZONE_CORNERS;
 
-        longest_m = nav_max(
-            longest_m, length_of(zone->vertex_x_site_m[next] - zone->vertex_x_site_m[corner],
-                                 zone->vertex_y_site_m[next] - zone->vertex_y_site_m[corner]));
+        longest_m = nav_max(longest_m,
+                            length_of(zone->vertex_x_site_m[next] - zone->vertex_x_site_m[corner],
+                                      zone->vertex_y_site_m[next] - zone->vertex_y_site_m[corner]));
     }
     return longest_m;
 }
@@ -103,8 +103,7 @@ static double distance_to_triangle_m(const nav_zone_t *zone, double x_site_m, do
         const double side_y = zone->vertex_y_site_m[next] - zone->vertex_y_site_m[corner];
         const double dx = x_site_m - zone->vertex_x_site_m[corner];
         const double dy = y_site_m - zone->vertex_y_site_m[corner];
-        const double along =
-            ((dx * side_x) + (dy * side_y)) / (square(side_x) + square(side_y));
+        const double along = ((dx * side_x) + (dy * side_y)) / (square(side_x) + square(side_y));
         const double share = nav_clamp(along, 0.0, 1.0);
 
         least_m = nav_min(least_m, length_of(dx - (share * side_x), dy - (share * side_y)));
@@ -126,11 +125,17 @@ static bool is_far(const nav_zone_t *zone, double x_site_m, double y_site_m, dou
 
 nav_status_t nav_kioz_check(const nav_zone_t *zone)
 {
-    const double lengths[NAV_ZONE_LENGTHS] = {
-        zone->center_x_site_m,    zone->center_y_site_m,    zone->radius_m,
-        zone->length_m,           zone->width_m,            zone->vertex_x_site_m[0],
-        zone->vertex_x_site_m[1], zone->vertex_x_site_m[2], zone->vertex_y_site_m[0],
-        zone->vertex_y_site_m[1], zone->vertex_y_site_m[2]};
+    const double lengths[NAV_ZONE_LENGTHS] = {zone->center_x_site_m,
+                                              zone->center_y_site_m,
+                                              zone->radius_m,
+                                              zone->length_m,
+                                              zone->width_m,
+                                              zone->vertex_x_site_m[0],
+                                              zone->vertex_x_site_m[1],
+                                              zone->vertex_x_site_m[2],
+                                              zone->vertex_y_site_m[0],
+                                              zone->vertex_y_site_m[1],
+                                              zone->vertex_y_site_m[2]};
     bool is_finite = nav_isfinite(zone->heading_rad);
     bool is_near = fabs(zone->heading_rad) <= NAV_ZONE_HEADING_MAX_RAD;
     nav_status_t status = NAV_OK;

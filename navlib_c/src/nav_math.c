@@ -36,12 +36,12 @@ static double sin_near_zero(double x)
     const double xx = x * x;
     const double sum =
         (1.0 / 6.0) -
-        (xx * ((1.0 / 120.0) -
-               (xx * ((1.0 / 5040.0) -
-                      (xx * ((1.0 / 362880.0) -
-                             (xx * ((1.0 / 39916800.0) -
-                                    (xx * ((1.0 / 6227020800.0) -
-                                           (xx * (1.0 / 1307674368000.0))))))))))));
+        (xx *
+         ((1.0 / 120.0) -
+          (xx * ((1.0 / 5040.0) -
+                 (xx * ((1.0 / 362880.0) -
+                        (xx * ((1.0 / 39916800.0) - (xx * ((1.0 / 6227020800.0) -
+                                                           (xx * (1.0 / 1307674368000.0))))))))))));
 
     return x - (x * xx * sum);
 }
@@ -50,14 +50,13 @@ static double cos_near_zero(double x)
 {
     const double xx = x * x;
     const double sum =
-        0.5 -
-        (xx * ((1.0 / 24.0) -
-               (xx * ((1.0 / 720.0) -
-                      (xx * ((1.0 / 40320.0) -
-                             (xx * ((1.0 / 3628800.0) -
-                                    (xx * ((1.0 / 479001600.0) -
-                                           (xx * ((1.0 / 87178291200.0) -
-                                                  (xx * (1.0 / 20922789888000.0))))))))))))));
+        0.5 - (xx * ((1.0 / 24.0) -
+                     (xx * ((1.0 / 720.0) -
+                            (xx * ((1.0 / 40320.0) -
+                                   (xx * ((1.0 / 3628800.0) -
+                                          (xx * ((1.0 / 479001600.0) -
+                                                 (xx * ((1.0 / 87178291200.0) -
+                                                        (xx * (1.0 / 20922789888000.0))))))))))))));
 
     return 1.0 - (xx * sum);
 }
@@ -66,9 +65,9 @@ static double cos_near_zero(double x)
 static nav_reduced_t reduce(double angle_rad)
 {
     const double multiple = floor((angle_rad * NAV_HALF_TURNS_PER_RAD) + 0.5);
-    const double rest = ((angle_rad - (multiple * NAV_HALF_PI_HIGH)) -
-                         (multiple * NAV_HALF_PI_MIDDLE)) -
-                        (multiple * NAV_HALF_PI_LOW);
+    const double rest =
+        ((angle_rad - (multiple * NAV_HALF_PI_HIGH)) - (multiple * NAV_HALF_PI_MIDDLE)) -
+        (multiple * NAV_HALF_PI_LOW);
     nav_reduced_t reduced = {0.0, 0};
 
     /* beyond the stated range the rest can be anything; the result still is a sine */
@@ -103,10 +102,15 @@ static double sin_in_quadrant(double remainder_rad, int32_t quadrant)
 /* atan(t) = atan(c) + atan((t - c) / (1 + t c)) with the nearest node c, for t in [0, 1] */
 static double atan_of_ratio(double ratio)
 {
-    static const double atan_of_node[NAV_ATAN_NODES] = {
-        0.0, 0.124354994546761435031, 0.244978663126864154172, 0.358770670270572220396,
-        0.463647609000806116214, 0.558599315343562435972, 0.643501108793284386803,
-        0.718829999621624505417, 0.785398163397448309616};
+    static const double atan_of_node[NAV_ATAN_NODES] = {0.0,
+                                                        0.124354994546761435031,
+                                                        0.244978663126864154172,
+                                                        0.358770670270572220396,
+                                                        0.463647609000806116214,
+                                                        0.558599315343562435972,
+                                                        0.643501108793284386803,
+                                                        0.718829999621624505417,
+                                                        0.785398163397448309616};
     int32_t node = 0;
 
     (void) nav_floor_index((ratio * NAV_ATAN_STEPS) + 0.5, &node);
@@ -123,9 +127,11 @@ static double atan_of_ratio(double ratio)
 
 bool nav_isfinite(double x)
 {
+    const void *source = &x;
     uint64_t bits = 0U;
+    void *target = &bits;
 
-    (void) memcpy(&bits, &x, sizeof(bits));
+    (void) memcpy(target, source, sizeof(bits));
     return (bits & NAV_EXPONENT_MASK) != NAV_EXPONENT_MASK;
 }
 
@@ -191,9 +197,9 @@ double nav_wrap_angle(double angle_rad)
     {
         const double quarters = 4.0 * floor((angle_rad * (NAV_HALF_TURNS_PER_RAD * 0.25)) + 0.5);
 
-        wrapped_rad = ((angle_rad - (quarters * NAV_HALF_PI_HIGH)) -
-                       (quarters * NAV_HALF_PI_MIDDLE)) -
-                      (quarters * NAV_HALF_PI_LOW);
+        wrapped_rad =
+            ((angle_rad - (quarters * NAV_HALF_PI_HIGH)) - (quarters * NAV_HALF_PI_MIDDLE)) -
+            (quarters * NAV_HALF_PI_LOW);
         /* rounding can leave it just outside; both ends are the same direction */
         if ((wrapped_rad < -NAV_PI) || (wrapped_rad >= NAV_PI))
         {

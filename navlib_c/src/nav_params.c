@@ -9,17 +9,23 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "nav_guard.h"
 #include "nav_math.h"
 
-#define NAV_PARAM_DEF(name, value, low, high, unit, doc) {#name, (value), (low), (high), (unit), (doc)},
+#define NAV_PARAM_DEF(name, value, low, high, unit, doc)                                           \
+    {#name, (value), (low), (high), (unit), (doc)},
 
 const nav_param_def_t nav_param_defs[NAV_PARAM_COUNT] = {NAV_PARAM_TABLE(NAV_PARAM_DEF)};
 
-_Static_assert(sizeof(nav_params_t) == (sizeof(double) * (size_t) NAV_PARAM_COUNT),
+_Static_assert((sizeof(nav_params_t) / sizeof(double)) ==
+                   (sizeof(nav_param_defs) / sizeof(nav_param_defs[0])),
                "parameters are nothing but doubles");
 
+#define NAV_PARAMS ((uint32_t) (sizeof(nav_params_t) / sizeof(double)))
+
 #define NAV_PARAM_INDEX(name) ((uint32_t) (offsetof(nav_params_t, name) / sizeof(double)))
-#define NAV_RULES_MAX 12U
+#define NAV_RULE_COUNT(rules) ((uint32_t) (sizeof(rules) / sizeof((rules)[0])))
+#define NAV_RULES_MAX 16U
 
 /* A rule between parameters, and the parameter to blame when it is broken. */
 typedef struct
@@ -28,11 +34,11 @@ typedef struct
     uint32_t index;
 } nav_rule_t;
 
-static uint32_t first_broken(const nav_rule_t rules[NAV_RULES_MAX])
+static uint32_t first_broken(const nav_rule_t *rules, uint32_t rule_count)
 {
-    uint32_t index = (uint32_t) NAV_PARAM_COUNT;
+    uint32_t index = NAV_PARAMS;
 
-    for (uint32_t rule = 0U; rule < NAV_RULES_MAX; rule++)
+    for (uint32_t rule = 0U; NAV_ALWAYS(rule < NAV_RULES_MAX) && (rule < rule_count); rule++)
     {
         if (rules[rule].is_broken && (rules[rule].index < index))
         {
@@ -49,7 +55,7 @@ static bool is_fraction(double value)
 
 static uint32_t check_whole_numbers(const nav_params_t *params)
 {
-    const nav_rule_t rules[NAV_RULES_MAX] = {
+    const nav_rule_t rules[] = {
         {is_fraction(params->surface_fill_neighbors), NAV_PARAM_INDEX(surface_fill_neighbors)},
         {is_fraction((params->costmap_patch_cells - 1.0) / 2.0),
          NAV_PARAM_INDEX(costmap_patch_cells)},
@@ -58,12 +64,12 @@ static uint32_t check_whole_numbers(const nav_params_t *params)
         {is_fraction(params->ace_budget_poses), NAV_PARAM_INDEX(ace_budget_poses)},
         {is_fraction(params->product_level), NAV_PARAM_INDEX(product_level)}};
 
-    return first_broken(rules);
+    return first_broken(rules, NAV_RULE_COUNT(rules));
 }
 
 static uint32_t check_geometry(const nav_params_t *params)
 {
-    const nav_rule_t rules[NAV_RULES_MAX] = {
+    const nav_rule_t rules[] = {
         {params->middle_x_m >= params->front_x_m, NAV_PARAM_INDEX(middle_x_m)},
         {params->rear_x_m >= params->middle_x_m, NAV_PARAM_INDEX(rear_x_m)},
         {params->bogie_pivot_x_m <= params->rear_x_m, NAV_PARAM_INDEX(bogie_pivot_x_m)},
@@ -74,7 +80,7 @@ static uint32_t check_geometry(const nav_params_t *params)
         {params->belly_height_m <= params->wheel_radius_m, NAV_PARAM_INDEX(belly_height_m)},
         {params->clearance_min_m >= params->belly_height_m, NAV_PARAM_INDEX(clearance_min_m)}};
 
-    return first_broken(rules);
+    return first_broken(rules, NAV_RULE_COUNT(rules));
 }
 
 static uint32_t check_planning(const nav_params_t *params)
@@ -85,8 +91,8 @@ static uint32_t check_planning(const nav_params_t *params)
     const double margin_m = params->costmap_recenter_margin_m;
     const double arc_poses = params->tree_arc_length_m / params->pose_spacing_m;
     const double turn_poses = NAV_PI / params->pose_spacing_rad;
-    const double outer_step = (double) ((NAV_TREE_ARCS - 1) / 2);
-    const nav_rule_t rules[NAV_RULES_MAX] = {
+    const double outer_step = ((double) NAV_TREE_ARCS - 1.0) / 2.0;
+    const nav_rule_t rules[] = {
         {margin_m < (half_heightmap_m + cost_cell_m), NAV_PARAM_INDEX(costmap_recenter_margin_m)},
         /* a map just recentred must not ask for it again */
         {margin_m >= (half_costmap_m - cost_cell_m), NAV_PARAM_INDEX(costmap_recenter_margin_m)},
@@ -96,22 +102,25 @@ static uint32_t check_planning(const nav_params_t *params)
         {turn_poses > (double) NAV_ARC_POSES_MAX, NAV_PARAM_INDEX(pose_spacing_rad)},
         {params->execute_length_m > params->tree_arc_length_m, NAV_PARAM_INDEX(execute_length_m)}};
 
-    return first_broken(rules);
+    return first_broken(rules, NAV_RULE_COUNT(rules));
 }
 
 static uint32_t check_ranges(const nav_params_t *params)
 {
+    const void *source = params;
     double values[NAV_PARAM_COUNT];
-    uint32_t refused = (uint32_t) NAV_PARAM_COUNT;
+    void *target = values;
+    uint32_t refused = NAV_PARAMS;
 
-    (void) memcpy(values, params, sizeof(values));
-    for (uint32_t index = 0U; index < (uint32_t) NAV_PARAM_COUNT; index++)
+    (void) memcpy(target, source, sizeof(values));
+    for (uint32_t index = 0U; index < NAV_PARAMS; index++)
     {
         const nav_param_def_t *def = &nav_param_defs[index];
         /* a NaN is in no range */
-        const bool is_valid = (values[index] >= def->min_value) && (values[index] <= def->max_value);
+        const bool is_valid =
+            (values[index] >= def->min_value) && (values[index] <= def->max_value);
 
-        if ((!is_valid) && (refused == (uint32_t) NAV_PARAM_COUNT))
+        if ((!is_valid) && (refused == NAV_PARAMS))
         {
             refused = index;
         }
@@ -121,9 +130,9 @@ static uint32_t check_ranges(const nav_params_t *params)
 
 static uint32_t check_conflicts(const nav_params_t *params)
 {
-    const uint32_t refused[3] = {
-        check_whole_numbers(params), check_geometry(params), check_planning(params)};
-    uint32_t index = (uint32_t) NAV_PARAM_COUNT;
+    const uint32_t refused[3] = {check_whole_numbers(params), check_geometry(params),
+                                 check_planning(params)};
+    uint32_t index = NAV_PARAMS;
 
     for (uint32_t group = 0U; group < 3U; group++)
     {
@@ -156,14 +165,14 @@ nav_status_t nav_params_check(const nav_params_t *params, uint32_t *index)
     else
     {
         *index = check_ranges(params);
-        if (*index < (uint32_t) NAV_PARAM_COUNT)
+        if (*index < NAV_PARAMS)
         {
             status = NAV_PARAMETER_RANGE;
         }
         else
         {
             *index = check_conflicts(params);
-            if (*index < (uint32_t) NAV_PARAM_COUNT)
+            if (*index < NAV_PARAMS)
             {
                 status = NAV_PARAMETER_CONFLICT;
             }

@@ -56,8 +56,8 @@ void nav_tree_init(const nav_params_t *params, nav_tree_shapes_t *shapes)
         shapes->pose_count = nav_arc_pose_count(params, &arc);
         for (uint32_t place = 0U; place < shapes->pose_count; place++)
         {
-            const nav_pose2_t pose = nav_arc_pose(
-                &origin, &arc, (double) (place + 1U) / (double) shapes->pose_count);
+            const nav_pose2_t pose =
+                nav_arc_pose(&origin, &arc, (double) (place + 1U) / (double) shapes->pose_count);
             shapes->forward_m[k][place] = pose.x_m;
             shapes->right_m[k][place] = pose.y_m;
         }
@@ -113,10 +113,9 @@ static nav_reason_t terrain_cost(const call_t *call, const nav_pose2_t *pose, do
         /* cells that ACE closed may be crossed: ACE judges every pose itself */
         nav_cost_cell_t cell = call->scene->costmap->cells[index];
         cell.ace_failed_count = 0U;
-        reason = nav_costmap_reason(
-            &cell, call->params, call->use_terrain_cost, call->use_zone_cost);
-        *cost_s_per_m =
-            call->use_terrain_cost ? ((double) cell.cost_s_per_m - plain_s_per_m) : 0.0;
+        reason =
+            nav_costmap_reason(&cell, call->params, call->use_terrain_cost, call->use_zone_cost);
+        *cost_s_per_m = call->use_terrain_cost ? ((double) cell.cost_s_per_m - plain_s_per_m) : 0.0;
     }
     else
     {
@@ -167,12 +166,8 @@ static nav_reason_t leaf_cost(const call_t *call, const branch_t *leaf, double *
     }
     else if (call->use_terrain_cost || call->use_zone_cost)
     {
-        *cost_s = nav_global_cost_to_go_s(call->scene->global,
-                                          call->scene->costmap,
-                                          call->params,
-                                          &call->in->goal,
-                                          leaf->end.x_m,
-                                          leaf->end.y_m);
+        *cost_s = nav_global_cost_to_go_s(call->scene->global, call->scene->costmap, call->params,
+                                          &call->in->goal, leaf->end.x_m, leaf->end.y_m);
     }
     else
     {
@@ -188,10 +183,8 @@ static nav_reason_t leaf_reason(const call_t *call, const branch_t *leaf)
     uint32_t index = 0U;
     if (nav_costmap_find(call->scene->costmap, leaf->end.x_m, leaf->end.y_m, &index))
     {
-        reason = nav_costmap_reason(&call->scene->costmap->cells[index],
-                                    call->params,
-                                    call->use_terrain_cost,
-                                    call->use_zone_cost);
+        reason = nav_costmap_reason(&call->scene->costmap->cells[index], call->params,
+                                    call->use_terrain_cost, call->use_zone_cost);
         reason = (reason == NAV_REASON_NONE) ? NAV_REASON_UNEXPECTED : reason;
     }
     return reason;
@@ -204,11 +197,8 @@ static double steering_s(const call_t *call, const nav_steering_t *from, const n
 }
 
 /** Writes the cost, or the reason of an infinite one, of one path. */
-static void path_rank(const call_t *call,
-                      nav_tree_t *tree,
-                      uint32_t path,
-                      double before_s,
-                      const branch_t *leaf)
+static void path_rank(
+    const call_t *call, nav_tree_t *tree, uint32_t path, double before_s, const branch_t *leaf)
 {
     double to_go_s = 0.0;
     nav_reason_t reason = leaf->reason;
@@ -226,11 +216,8 @@ static void path_rank(const call_t *call,
 }
 
 /** Ranks the 11 paths that go on from a first arc. */
-static void rank_seconds(const call_t *call,
-                         nav_tree_t *tree,
-                         uint32_t node,
-                         const branch_t *first,
-                         double before_s)
+static void rank_seconds(
+    const call_t *call, nav_tree_t *tree, uint32_t node, const branch_t *first, double before_s)
 {
     const nav_arc_t arc = tree_arc(call, node % ARCS);
     const nav_steering_t steering = nav_arc_steering(&arc);
@@ -269,10 +256,7 @@ static void rank(const call_t *call, nav_tree_t *tree)
             const nav_arc_t arc = tree_arc(call, k);
             const branch_t first = branch_follow(call, &turned, k);
             const nav_steering_t *steering = (turn > 0U) ? &in_place : &call->in->steering;
-            rank_seconds(call,
-                         tree,
-                         (turn * ARCS) + k,
-                         &first,
+            rank_seconds(call, tree, (turn * ARCS) + k, &first,
                          turn_s + steering_s(call, steering, &arc));
         }
     }
@@ -377,8 +361,8 @@ static nav_reason_t test_pose(call_t *call,
                               nav_ace_bounds_t *worst)
 {
     nav_reason_t reason = NAV_REASON_NONE;
-    if (nav_kioz_forbids(
-            call->scene->kioz, pose->x_m, pose->y_m, call->in->uncertainty.global_position_m))
+    if (nav_kioz_forbids(call->scene->kioz, pose->x_m, pose->y_m,
+                         call->in->uncertainty.global_position_m))
     {
         reason = NAV_REASON_KIOZ;
     }
@@ -387,7 +371,7 @@ static nav_reason_t test_pose(call_t *call,
         const nav_uncertainty_t grown =
             nav_ace_grow(call->params, &call->in->uncertainty, distance_m);
         nav_ace_bounds_t bounds;
-        nav_ace_evaluate(&call->scene->ace, pose, &grown, false, &bounds);
+        nav_ace_evaluate(&call->scene->ace, pose, &grown, &bounds);
         call->ace_evaluations++;
         worsen(worst, &bounds);
         reason = (nav_reason_t) bounds.reason;
@@ -424,12 +408,11 @@ static test_t test_arc(call_t *call, const nav_pose2_t *start, uint32_t k, doubl
     bool is_at_goal = false;
 
     for (uint32_t place = 0U;
-         (place < shapes->pose_count) && (test.reason == NAV_REASON_NONE) && !is_at_goal;
-         place++)
+         (place < shapes->pose_count) && (test.reason == NAV_REASON_NONE) && !is_at_goal; place++)
     {
         const nav_pose2_t pose = shape_pose(shapes, start, k, place, cos_sin);
-        test.reason = test_pose(
-            call, &pose, distance_m + ((double) (place + 1U) * spacing_m), &test.bounds);
+        test.reason =
+            test_pose(call, &pose, distance_m + ((double) (place + 1U) * spacing_m), &test.bounds);
         is_at_goal = goal_distance_m(call, &pose) <= call->in->goal.radius_m;
     }
     return test;
@@ -574,14 +557,14 @@ static nav_arc_t executed_arc(const call_t *call, uint32_t path, const branch_t 
     if (node >= ARCS)
     {
         arc.length_m = 0.0;
-        arc.heading_change_rad = nav_clamp(turning.heading_change_rad,
-                                           -call->params->execute_turn_rad,
-                                           call->params->execute_turn_rad);
+        arc.heading_change_rad =
+            nav_clamp(turning.heading_change_rad, -call->params->execute_turn_rad,
+                      call->params->execute_turn_rad);
     }
     else
     {
-        const double driven_m = arc.length_m * (double) first->pose_count /
-                                (double) call->scene->shapes->pose_count;
+        const double driven_m =
+            arc.length_m * (double) first->pose_count / (double) call->scene->shapes->pose_count;
         const double length_m = nav_min(call->params->execute_length_m, driven_m);
         arc.heading_change_rad *= length_m / arc.length_m;
         arc.length_m = length_m;
@@ -609,12 +592,9 @@ static void show_path(const call_t *call, const nav_tree_t *tree, nav_select_arc
     out->cost_to_go_s = to_go_s;
     if (!leaf.is_at_goal && (call->use_terrain_cost || call->use_zone_cost))
     {
-        out->global_point_count = nav_global_descend(call->scene->global,
-                                                     call->scene->costmap,
-                                                     leaf.end.x_m,
-                                                     leaf.end.y_m,
-                                                     out->global_points,
-                                                     (uint32_t) NAV_GLOBAL_POINTS_MAX);
+        out->global_point_count =
+            nav_global_descend(call->scene->global, call->scene->costmap, leaf.end.x_m,
+                               leaf.end.y_m, out->global_points, (uint32_t) NAV_GLOBAL_POINTS_MAX);
     }
 }
 

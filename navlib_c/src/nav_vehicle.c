@@ -40,9 +40,9 @@ static link_t turned_nose_down(double forward_m, double down_m, double angle_rad
 }
 
 /** Change of a point's height per radian that its link turns nose down. */
-static double height_per_turn(const body_t *body, double forward_m, double down_m)
+static double height_per_turn(const body_t *body, const link_t *arm)
 {
-    return -((body->sin_pitch * down_m) + (body->cos_pitch * body->cos_roll * forward_m));
+    return -((body->sin_pitch * arm->down_m) + (body->cos_pitch * body->cos_roll * arm->forward_m));
 }
 
 void nav_vehicle_init(const nav_params_t *params, nav_vehicle_t *vehicle)
@@ -64,60 +64,53 @@ void nav_vehicle_init(const nav_params_t *params, nav_vehicle_t *vehicle)
     vehicle->bogie_pivot_height_m = params->bogie_pivot_height_m;
 }
 
-/** The three wheels of one side; rocker_sign is +1 on the left, -1 on the right. */
-static void side_heights(const nav_vehicle_t *vehicle,
-                         const double state[NAV_LINKAGE_STATES],
-                         const body_t *body,
-                         uint32_t side,
-                         double height_m[NAV_WHEELS],
-                         double jacobian[NAV_WHEELS][NAV_LINKAGE_STATES])
+/** Arms from the rocker pivot and, behind it, from the bogie pivot to a hub. */
+typedef struct
 {
-    const double rocker_sign = (side == 0U) ? 1.0 : -1.0;
-    const uint32_t bogie_state = (uint32_t) NAV_LINKAGE_BOGIE_LEFT + side;
-    const double rocker = rocker_sign * state[NAV_LINKAGE_ROCKER];
-    const double bogie = rocker + state[bogie_state];
-    const double rocker_drop_m = vehicle->rocker_pivot_height_m - vehicle->bogie_pivot_height_m;
-    const link_t to_bogie = turned_nose_down(
-        vehicle->bogie_pivot_x_m - vehicle->rocker_pivot_x_m, rocker_drop_m, rocker);
+    link_t on_rocker;
+    link_t on_bogie; /* zero for the front wheel, which the rocker carries itself */
+} arms_t;
 
-    for (uint32_t place = 0U; place < (uint32_t) WHEELS_PER_SIDE; place++)
+static double rocker_sign(uint32_t side)
+{
+    return (side == 0U) ? 1.0 : -1.0;
+}
+
+static arms_t wheel_arms(const nav_vehicle_t *vehicle,
+                         const double state[NAV_LINKAGE_STATES],
+                         uint32_t wheel)
+{
+    const uint32_t side = wheel / (uint32_t) WHEELS_PER_SIDE;
+    const double rocker = rocker_sign(side) * state[NAV_LINKAGE_ROCKER];
+    const double bogie = rocker + state[(uint32_t) NAV_LINKAGE_BOGIE_LEFT + side];
+    const double hub_x_m = vehicle->hub_x_m[wheel];
+    arms_t arms = {{0.0, 0.0}, {0.0, 0.0}};
+
+    if ((wheel % (uint32_t) WHEELS_PER_SIDE) == FRONT)
     {
-        const uint32_t wheel = (side * (uint32_t) WHEELS_PER_SIDE) + place;
-        const double y_m = vehicle->hub_y_m[wheel];
-        link_t on_rocker;
-        link_t on_bogie = {0.0, 0.0};
-        if (place == FRONT)
-        {
-            on_rocker = turned_nose_down(vehicle->hub_x_m[wheel] - vehicle->rocker_pivot_x_m,
-                                         vehicle->rocker_pivot_height_m - vehicle->hub_height_m,
-                                         rocker);
-        }
-        else
-        {
-            on_bogie = turned_nose_down(vehicle->hub_x_m[wheel] - vehicle->bogie_pivot_x_m,
-                                        vehicle->bogie_pivot_height_m - vehicle->hub_height_m,
-                                        bogie);
-            on_rocker.forward_m = to_bogie.forward_m + on_bogie.forward_m;
-            on_rocker.down_m = to_bogie.down_m + on_bogie.down_m;
-        }
-        const double x_m = vehicle->rocker_pivot_x_m + on_rocker.forward_m;
-        const double z_m = on_rocker.down_m - vehicle->rocker_pivot_height_m;
-
-        height_m[wheel] = state[NAV_LINKAGE_HEIGHT] + (body->sin_pitch * x_m) -
-                          (body->cos_pitch * body->sin_roll * y_m) -
-                          (body->cos_pitch * body->cos_roll * z_m) - vehicle->hub_height_m;
-        jacobian[wheel][NAV_LINKAGE_HEIGHT] = 1.0;
-        jacobian[wheel][NAV_LINKAGE_ROLL] =
-            body->cos_pitch * ((body->sin_roll * z_m) - (body->cos_roll * y_m));
-        jacobian[wheel][NAV_LINKAGE_PITCH] =
-            (body->cos_pitch * x_m) +
-            (body->sin_pitch * ((body->sin_roll * y_m) + (body->cos_roll * z_m)));
-        jacobian[wheel][NAV_LINKAGE_ROCKER] =
-            rocker_sign * height_per_turn(body, on_rocker.forward_m, on_rocker.down_m);
-        jacobian[wheel][NAV_LINKAGE_BOGIE_LEFT] = 0.0;
-        jacobian[wheel][NAV_LINKAGE_BOGIE_RIGHT] = 0.0;
-        jacobian[wheel][bogie_state] = height_per_turn(body, on_bogie.forward_m, on_bogie.down_m);
+        arms.on_rocker =
+            turned_nose_down(hub_x_m - vehicle->rocker_pivot_x_m,
+                             vehicle->rocker_pivot_height_m - vehicle->hub_height_m, rocker);
     }
+    else
+    {
+        const link_t to_bogie = turned_nose_down(
+            vehicle->bogie_pivot_x_m - vehicle->rocker_pivot_x_m,
+            vehicle->rocker_pivot_height_m - vehicle->bogie_pivot_height_m, rocker);
+        arms.on_bogie =
+            turned_nose_down(hub_x_m - vehicle->bogie_pivot_x_m,
+                             vehicle->bogie_pivot_height_m - vehicle->hub_height_m, bogie);
+        arms.on_rocker.forward_m = to_bogie.forward_m + arms.on_bogie.forward_m;
+        arms.on_rocker.down_m = to_bogie.down_m + arms.on_bogie.down_m;
+    }
+    return arms;
+}
+
+static body_t body_of(const double state[NAV_LINKAGE_STATES])
+{
+    const body_t body = {nav_sin(state[NAV_LINKAGE_PITCH]), nav_cos(state[NAV_LINKAGE_PITCH]),
+                         nav_sin(state[NAV_LINKAGE_ROLL]), nav_cos(state[NAV_LINKAGE_ROLL])};
+    return body;
 }
 
 void nav_vehicle_wheel_heights(const nav_vehicle_t *vehicle,
@@ -125,12 +118,46 @@ void nav_vehicle_wheel_heights(const nav_vehicle_t *vehicle,
                                double height_m[NAV_WHEELS],
                                double jacobian[NAV_WHEELS][NAV_LINKAGE_STATES])
 {
-    const body_t body = {nav_sin(state[NAV_LINKAGE_PITCH]),
-                         nav_cos(state[NAV_LINKAGE_PITCH]),
-                         nav_sin(state[NAV_LINKAGE_ROLL]),
-                         nav_cos(state[NAV_LINKAGE_ROLL])};
-    side_heights(vehicle, state, &body, 0U, height_m, jacobian);
-    side_heights(vehicle, state, &body, 1U, height_m, jacobian);
+    const body_t body = body_of(state);
+    for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
+    {
+        const uint32_t side = wheel / (uint32_t) WHEELS_PER_SIDE;
+        const arms_t arms = wheel_arms(vehicle, state, wheel);
+        const double x_m = vehicle->rocker_pivot_x_m + arms.on_rocker.forward_m;
+        const double y_m = vehicle->hub_y_m[wheel];
+        const double z_m = arms.on_rocker.down_m - vehicle->rocker_pivot_height_m;
+        double *row = jacobian[wheel];
+
+        height_m[wheel] = state[NAV_LINKAGE_HEIGHT] + (body.sin_pitch * x_m) -
+                          (body.cos_pitch * body.sin_roll * y_m) -
+                          (body.cos_pitch * body.cos_roll * z_m) - vehicle->hub_height_m;
+        row[NAV_LINKAGE_HEIGHT] = 1.0;
+        row[NAV_LINKAGE_ROLL] = body.cos_pitch * ((body.sin_roll * z_m) - (body.cos_roll * y_m));
+        row[NAV_LINKAGE_PITCH] = (body.cos_pitch * x_m) +
+                                 (body.sin_pitch * ((body.sin_roll * y_m) + (body.cos_roll * z_m)));
+        row[NAV_LINKAGE_ROCKER] = rocker_sign(side) * height_per_turn(&body, &arms.on_rocker);
+        row[NAV_LINKAGE_BOGIE_LEFT] = 0.0;
+        row[NAV_LINKAGE_BOGIE_RIGHT] = 0.0;
+        row[(uint32_t) NAV_LINKAGE_BOGIE_LEFT + side] = height_per_turn(&body, &arms.on_bogie);
+    }
+}
+
+void nav_vehicle_wheel_places(const nav_vehicle_t *vehicle,
+                              const double state[NAV_LINKAGE_STATES],
+                              double forward_m[NAV_WHEELS],
+                              double right_m[NAV_WHEELS])
+{
+    const body_t body = body_of(state);
+    for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
+    {
+        const arms_t arms = wheel_arms(vehicle, state, wheel);
+        const double x_m = vehicle->rocker_pivot_x_m + arms.on_rocker.forward_m;
+        const double y_m = vehicle->hub_y_m[wheel];
+        const double z_m = arms.on_rocker.down_m - vehicle->rocker_pivot_height_m;
+        forward_m[wheel] = (body.cos_pitch * x_m) +
+                           (body.sin_pitch * ((body.sin_roll * y_m) + (body.cos_roll * z_m)));
+        right_m[wheel] = (body.cos_roll * y_m) - (body.sin_roll * (z_m + vehicle->hub_height_m));
+    }
 }
 
 static void swap_rows(double matrix[NAV_WHEELS][2 * NAV_WHEELS], uint32_t a, uint32_t b)

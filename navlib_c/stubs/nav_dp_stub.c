@@ -11,7 +11,8 @@
 #define NAV_STUB_HEADER_BYTES ((uint32_t) sizeof(nav_stub_header_t))
 
 _Static_assert((NAV_STUB_BUFFER_BYTES % NAV_STUB_ALIGN) == 0U, "records start at multiples of 8");
-_Static_assert((sizeof(nav_stub_header_t) % NAV_STUB_ALIGN) == 0U, "records start at multiples of 8");
+_Static_assert((sizeof(nav_stub_header_t) % NAV_STUB_ALIGN) == 0U,
+               "records start at multiples of 8");
 
 typedef struct
 {

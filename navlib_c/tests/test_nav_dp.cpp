@@ -20,12 +20,14 @@ namespace
 
 std::map<std::string, uint32_t> number_sizes()
 {
-    return {{"double", 8U},  {"float", 4U},    {"int32_t", 4U},
+    return {{"double", 8U},   {"float", 4U},    {"int32_t", 4U},
             {"uint32_t", 4U}, {"uint16_t", 2U}, {"uint8_t", 1U}};
 }
 
 // checks that records only use what came before them, and that fields follow without a gap
-void expect_described(const nav_record_def_t *defs, size_t count, std::map<std::string, uint32_t> &sizes)
+void expect_described(const nav_record_def_t *defs,
+                      size_t count,
+                      std::map<std::string, uint32_t> &sizes)
 {
     for (size_t row = 0; row < count; row++)
     {

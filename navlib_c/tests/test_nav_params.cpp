@@ -94,9 +94,9 @@ TEST(NavParams, EveryParameterIsRefusedOutsideItsRange)
     {
         const nav_param_def_t &def = nav_param_defs[index];
         const double infinity = std::numeric_limits<double>::infinity();
-        for (double value : {std::nextafter(def.min_value, -infinity),
-                             std::nextafter(def.max_value, infinity), infinity, -infinity,
-                             std::numeric_limits<double>::quiet_NaN()})
+        for (double value :
+             {std::nextafter(def.min_value, -infinity), std::nextafter(def.max_value, infinity),
+              infinity, -infinity, std::numeric_limits<double>::quiet_NaN()})
         {
             const nav_params_t params = with(index, value);
             uint32_t refused = 0U;

@@ -19,7 +19,9 @@ def load_planner(name: str) -> type[Planner]:
     """
     found = _from_file(name) if ":" in name else _from_entry_points(name)
     if not (isinstance(found, type) and issubclass(found, Planner)):
-        raise PlannerLoadError(f"planner {name}: expected a class derived from pyharness.planner.Planner")
+        raise PlannerLoadError(
+            f"planner {name}: expected a class derived from pyharness.planner.Planner"
+        )
     return found
 
 

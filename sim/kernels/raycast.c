@@ -51,7 +51,7 @@ int64_t sim_pyramid_size(int32_t rows, int32_t cols, int32_t *level_count)
     int32_t block_cols = cols - 1;
     do
     {
-        size += (int64_t)block_rows * block_cols;
+        size += (int64_t) block_rows * block_cols;
         level++;
         block_rows = block_count(rows - 1, SIM_PYRAMID_SHIFT * level);
         block_cols = block_count(cols - 1, SIM_PYRAMID_SHIFT * level);
@@ -70,11 +70,11 @@ static void build_cells(const sim_terrain_t *terrain, float *top_z_m)
 {
     for (int32_t row = 0; row < terrain->rows - 1; row++)
     {
-        const float *south = &terrain->z_site_m[(ptrdiff_t)row * terrain->cols];
+        const float *south = &terrain->z_site_m[(ptrdiff_t) row * terrain->cols];
         const float *north = south + terrain->cols;
         for (int32_t col = 0; col < terrain->cols - 1; col++)
         {
-            float top = (float)INFINITY;
+            float top = (float) INFINITY;
             top = higher(top, south[col]);
             top = higher(top, south[col + 1]);
             top = higher(top, north[col]);
@@ -91,15 +91,15 @@ static void build_level(const float *below, int32_t below_rows, int32_t below_co
     const int32_t cols = block_count(below_cols, SIM_PYRAMID_SHIFT);
     for (int32_t i = 0; i < rows * cols; i++)
     {
-        top_z_m[i] = (float)INFINITY;
+        top_z_m[i] = (float) INFINITY;
     }
     for (int32_t row = 0; row < below_rows; row++)
     {
-        float *line = &top_z_m[(ptrdiff_t)(row >> SIM_PYRAMID_SHIFT) * cols];
+        float *line = &top_z_m[(ptrdiff_t) (row >> SIM_PYRAMID_SHIFT) * cols];
         for (int32_t col = 0; col < below_cols; col++)
         {
             const int32_t block = col >> SIM_PYRAMID_SHIFT;
-            line[block] = higher(line[block], below[((ptrdiff_t)row * below_cols) + col]);
+            line[block] = higher(line[block], below[((ptrdiff_t) row * below_cols) + col]);
         }
     }
 }
@@ -107,14 +107,14 @@ static void build_level(const float *below, int32_t below_rows, int32_t below_co
 static int32_t set_levels(const sim_terrain_t *terrain, const float *pyramid, level_t *levels)
 {
     int32_t count;
-    (void)sim_pyramid_size(terrain->rows, terrain->cols, &count);
+    (void) sim_pyramid_size(terrain->rows, terrain->cols, &count);
     for (int32_t i = 0; i < count; i++)
     {
         levels[i].shift = SIM_PYRAMID_SHIFT * i;
         levels[i].rows = block_count(terrain->rows - 1, levels[i].shift);
         levels[i].cols = block_count(terrain->cols - 1, levels[i].shift);
         levels[i].top_z_m = pyramid;
-        pyramid += (ptrdiff_t)levels[i].rows * levels[i].cols;
+        pyramid += (ptrdiff_t) levels[i].rows * levels[i].cols;
     }
     return count;
 }
@@ -148,9 +148,10 @@ static int clip_axis(double start, double rate, double limit, double *t_in, doub
     return *t_in <= *t_out;
 }
 
-static int32_t floor_index(double value, int32_t low, int32_t high)
+/* index of a place that is inside low..high but for rounding; low is never negative */
+static int32_t clamp_cell(double value, int32_t low, int32_t high)
 {
-    const int32_t index = (int32_t)floor(value);
+    const int32_t index = (int32_t) value;
     return (index < low) ? low : ((index > high) ? high : index);
 }
 
@@ -158,22 +159,24 @@ static int32_t floor_index(double value, int32_t low, int32_t high)
  * First point in [t, t_out] where the ray meets the surface of one cell, or NaN. Along a straight
  * line the bilinear height is a quadratic: height above ground f(s) = f0 + b s + a s^2.
  */
-static double meet_cell(const sim_terrain_t *terrain, const ray_t *ray, const place_t *place,
+static double meet_cell(const sim_terrain_t *terrain,
+                        const ray_t *ray,
+                        const place_t *place,
                         double t_out)
 {
-    const float *south = &terrain->z_site_m[((ptrdiff_t)place->row * terrain->cols) + place->col];
+    const float *south = &terrain->z_site_m[((ptrdiff_t) place->row * terrain->cols) + place->col];
     const float *north = south + terrain->cols;
-    const double z00 = (double)south[0];
-    const double d_col = (double)south[1] - z00;
-    const double d_row = (double)north[0] - z00;
-    const double twist = ((double)north[1] - (double)north[0]) - d_col;
-    const double row = ray->row0 + (place->t * ray->d_row) - (double)place->row;
-    const double col = ray->col0 + (place->t * ray->d_col) - (double)place->col;
-    const double f0 = z00 + (d_col * col) + (row * (d_row + (twist * col)))
-                    - (ray->z0 + (place->t * ray->d_z));
+    const double z00 = (double) south[0];
+    const double d_col = (double) south[1] - z00;
+    const double d_row = (double) north[0] - z00;
+    const double twist = ((double) north[1] - (double) north[0]) - d_col;
+    const double row = ray->row0 + (place->t * ray->d_row) - (double) place->row;
+    const double col = ray->col0 + (place->t * ray->d_col) - (double) place->col;
+    const double f0 =
+        z00 + (d_col * col) + (row * (d_row + (twist * col))) - (ray->z0 + (place->t * ray->d_z));
     const double a = twist * ray->d_row * ray->d_col;
-    const double b = (d_col * ray->d_col) + (d_row * ray->d_row)
-                   + (twist * ((row * ray->d_col) + (col * ray->d_row))) - ray->d_z;
+    const double b = (d_col * ray->d_col) + (d_row * ray->d_row) +
+                     (twist * ((row * ray->d_col) + (col * ray->d_row))) - ray->d_z;
     const double span = t_out - place->t;
     if (f0 <= 0.0)
     {
@@ -187,57 +190,62 @@ static double meet_cell(const sim_terrain_t *terrain, const ray_t *ray, const pl
     /* smallest positive root, in the form that does not cancel */
     const double root = sqrt(root_of);
     const double s = (b < 0.0) ? (2.0 * f0) / (root - b) : (-b - root) / (2.0 * a);
-    return (s <= span + 1e-9) ? place->t + s : (double)NAN;
+    return (s <= span + 1e-9) ? place->t + s : (double) NAN;
 }
 
-/* moves the place across the border of its block at this level; 0 when it leaves the map */
-static int cross_block(const sim_terrain_t *terrain, const ray_t *ray, int32_t shift, double t_row,
-                       double t_col, place_t *place)
+/* parameter at which the ray leaves the block of cells that share all bits above the mask */
+static inline double exit_at(double start, double inverse, int32_t cell, int32_t mask)
 {
-    const int32_t row_first = (place->row >> shift) << shift;
-    const int32_t col_first = (place->col >> shift) << shift;
-    const int32_t row_last = row_first + (1 << shift) - 1;
-    const int32_t col_last = col_first + (1 << shift) - 1;
+    const int32_t border = (inverse > 0.0) ? (cell | mask) + 1 : (cell & ~mask);
+    return ((double) border - start) * inverse;
+}
+
+/* moves the place across the border of its block at this level */
+static inline void cross_block(
+    const ray_t *ray, int32_t mask, double t_row, double t_col, place_t *place)
+{
     if (t_row < t_col)
     {
+        const int32_t first = place->col & ~mask;
         place->t = (t_row > place->t) ? t_row : place->t;
-        place->row = (ray->d_row > 0.0) ? row_last + 1 : row_first - 1;
-        place->col = floor_index(ray->col0 + (place->t * ray->d_col), col_first, col_last);
+        place->row = (ray->d_row > 0.0) ? (place->row | mask) + 1 : (place->row & ~mask) - 1;
+        place->col = clamp_cell(ray->col0 + (place->t * ray->d_col), first, first + mask);
     }
     else
     {
+        const int32_t first = place->row & ~mask;
         place->t = (t_col > place->t) ? t_col : place->t;
-        place->col = (ray->d_col > 0.0) ? col_last + 1 : col_first - 1;
-        place->row = floor_index(ray->row0 + (place->t * ray->d_row), row_first, row_last);
+        place->col = (ray->d_col > 0.0) ? (place->col | mask) + 1 : (place->col & ~mask) - 1;
+        place->row = clamp_cell(ray->row0 + (place->t * ray->d_row), first, first + mask);
     }
-    return (place->row >= 0) && (place->row < terrain->rows - 1) && (place->col >= 0)
-        && (place->col < terrain->cols - 1);
 }
 
-/* parameter at which the ray leaves the block of cells first..first + 2^shift - 1 */
-static double exit_at(double start, double inverse, int32_t cell, int32_t shift)
+static int is_on_map(const sim_terrain_t *terrain, const place_t *place)
 {
-    const int32_t block = (cell >> shift) + ((inverse > 0.0) ? 1 : 0);
-    return ((double)((int64_t)block << shift) - start) * inverse;
+    return (place->row >= 0) && (place->row < terrain->rows - 1) && (place->col >= 0) &&
+           (place->col < terrain->cols - 1);
 }
 
-static double trace(const sim_terrain_t *terrain, const level_t *levels, int32_t level_count,
-                    const ray_t *ray, place_t place, double t_max)
+static double trace(const sim_terrain_t *terrain,
+                    const level_t *levels,
+                    int32_t level_count,
+                    const ray_t *ray,
+                    place_t place,
+                    double t_max)
 {
     int32_t level = (level_count > 2) ? 2 : level_count - 1;
-    int is_inside = 1;
-    while (is_inside && (place.t <= t_max))
+    while ((place.t <= t_max) && is_on_map(terrain, &place))
     {
         const level_t *here = &levels[level];
-        const int32_t shift = here->shift;
-        const double t_row = exit_at(ray->row0, ray->inverse_row, place.row, shift);
-        const double t_col = exit_at(ray->col0, ray->inverse_col, place.col, shift);
+        const int32_t mask = (1 << here->shift) - 1;
+        const double t_row = exit_at(ray->row0, ray->inverse_row, place.row, mask);
+        const double t_col = exit_at(ray->col0, ray->inverse_col, place.col, mask);
         const double t_near = (t_row < t_col) ? t_row : t_col;
         const double t_out = (t_near < t_max) ? t_near : t_max;
         const double t_low = (ray->d_z > 0.0) ? t_out : place.t;
         const ptrdiff_t block =
-            ((ptrdiff_t)(place.row >> shift) * here->cols) + (place.col >> shift);
-        if (ray->z0 + (t_low * ray->d_z) >= (double)here->top_z_m[block])
+            ((ptrdiff_t) (place.row >> here->shift) * here->cols) + (place.col >> here->shift);
+        if (ray->z0 + (t_low * ray->d_z) >= (double) here->top_z_m[block])
         {
             if (level > 0)
             {
@@ -250,19 +258,25 @@ static double trace(const sim_terrain_t *terrain, const level_t *levels, int32_t
                 return t_hit;
             }
         }
-        const int32_t parent_row = place.row >> (shift + SIM_PYRAMID_SHIFT);
-        const int32_t parent_col = place.col >> (shift + SIM_PYRAMID_SHIFT);
-        is_inside = cross_block(terrain, ray, shift, t_row, t_col, &place);
-        const int is_new_parent = ((place.row >> (shift + SIM_PYRAMID_SHIFT)) != parent_row)
-                               || ((place.col >> (shift + SIM_PYRAMID_SHIFT)) != parent_col);
+        const int32_t row = place.row;
+        const int32_t col = place.col;
+        cross_block(ray, mask, t_row, t_col, &place);
+        /* out of the parent block too: look from one level further up */
+        const int32_t changed = (place.row ^ row) | (place.col ^ col);
+        const int is_new_parent = (changed & ~(((mask + 1) << SIM_PYRAMID_SHIFT) - 1)) != 0;
         level += (is_new_parent && (level < level_count - 1)) ? 1 : 0;
     }
     return NAN;
 }
 
-void sim_raycast(const sim_terrain_t *terrain, const float *pyramid, const double *origin_site_m,
-                 const double *attitude, const double *directions, int32_t count,
-                 double range_max_m, float *range_m)
+void sim_raycast(const sim_terrain_t *terrain,
+                 const float *pyramid,
+                 const double *origin_site_m,
+                 const double *attitude,
+                 const double *directions,
+                 int32_t count,
+                 double range_max_m,
+                 float *range_m)
 {
     level_t levels[SIM_PYRAMID_LEVELS_MAX];
     const int32_t level_count = set_levels(terrain, pyramid, levels);
@@ -273,7 +287,7 @@ void sim_raycast(const sim_terrain_t *terrain, const float *pyramid, const doubl
     ray.z0 = origin_site_m[2];
     for (int32_t i = 0; i < count; i++)
     {
-        const double *body = &directions[(ptrdiff_t)3 * i];
+        const double *body = &directions[(ptrdiff_t) 3 * i];
         double direction[3];
         for (int axis = 0; axis < 3; axis++)
         {
@@ -289,14 +303,14 @@ void sim_raycast(const sim_terrain_t *terrain, const float *pyramid, const doubl
         ray.inverse_row = (fabs(ray.d_row) < 1e-12) ? 1e300 : 1.0 / ray.d_row;
         ray.inverse_col = (fabs(ray.d_col) < 1e-12) ? 1e300 : 1.0 / ray.d_col;
         double t_hit = NAN;
-        if (clip_axis(ray.row0, ray.d_row, (double)(terrain->rows - 1), &t_in, &t_out)
-            && clip_axis(ray.col0, ray.d_col, (double)(terrain->cols - 1), &t_in, &t_out))
+        if (clip_axis(ray.row0, ray.d_row, (double) (terrain->rows - 1), &t_in, &t_out) &&
+            clip_axis(ray.col0, ray.d_col, (double) (terrain->cols - 1), &t_in, &t_out))
         {
-            const place_t place = {
-                t_in, floor_index(ray.row0 + (t_in * ray.d_row), 0, terrain->rows - 2),
-                floor_index(ray.col0 + (t_in * ray.d_col), 0, terrain->cols - 2)};
+            const place_t place = {t_in,
+                                   clamp_cell(ray.row0 + (t_in * ray.d_row), 0, terrain->rows - 2),
+                                   clamp_cell(ray.col0 + (t_in * ray.d_col), 0, terrain->cols - 2)};
             t_hit = trace(terrain, levels, level_count, &ray, place, t_out);
         }
-        range_m[i] = (float)t_hit;
+        range_m[i] = (float) t_hit;
     }
 }

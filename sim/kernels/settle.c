@@ -95,28 +95,30 @@ static int is_inside(const problem_t *problem, double north_m, double east_m, do
     const double col = (east_m - terrain->east_min_m) * problem->inverse_resolution;
     const double margin = margin_m * problem->inverse_resolution;
     /* written so that NaN is outside; short of the last node, so that a cell always follows */
-    return (row - margin >= 0.0) && (row + margin < (double)(terrain->rows - 1))
-        && (col - margin >= 0.0) && (col + margin < (double)(terrain->cols - 1));
+    return (row - margin >= 0.0) && (row + margin < (double) (terrain->rows - 1)) &&
+           (col - margin >= 0.0) && (col + margin < (double) (terrain->cols - 1));
 }
 
 /* the caller guarantees is_inside() */
-static void sample_ground(const problem_t *problem, double north_m, double east_m,
-                          ground_t *ground)
+static inline void sample_ground(const problem_t *problem,
+                                 double north_m,
+                                 double east_m,
+                                 ground_t *ground)
 {
     const sim_terrain_t *terrain = problem->terrain;
     const double scale = problem->inverse_resolution;
     const double u = (north_m - terrain->north_min_m) * scale;
     const double v = (east_m - terrain->east_min_m) * scale;
-    const int32_t row = (int32_t)u;
-    const int32_t col = (int32_t)v;
-    const float *south = &terrain->z_site_m[((ptrdiff_t)row * terrain->cols) + col];
+    const int32_t row = (int32_t) u;
+    const int32_t col = (int32_t) v;
+    const float *south = &terrain->z_site_m[((ptrdiff_t) row * terrain->cols) + col];
     const float *north = south + terrain->cols;
-    const double fu = u - (double)row;
-    const double fv = v - (double)col;
-    const double z00 = (double)south[0];
-    const double d_east = (double)south[1] - z00;
-    const double d_north = (double)north[0] - z00;
-    const double twist = ((double)north[1] - (double)north[0]) - d_east;
+    const double fu = u - (double) row;
+    const double fv = v - (double) col;
+    const double z00 = (double) south[0];
+    const double d_east = (double) south[1] - z00;
+    const double d_north = (double) north[0] - z00;
+    const double twist = ((double) north[1] - (double) north[0]) - d_east;
     ground->slope_north = (d_north + (twist * fv)) * scale;
     ground->slope_east = (d_east + (twist * fu)) * scale;
     ground->z_m = z00 + (d_east * fv) + (fu * (d_north + (twist * fv)));
@@ -125,8 +127,8 @@ static void sample_ground(const problem_t *problem, double north_m, double east_
 /* ------------------------------------------------------------------ linkage */
 
 /* turns (x, z) of a link by angle, positive nose-down, into out; out may alias */
-static void turn_link(double sine, double cosine, const double *from, const double *to,
-                      double *out_x, double *out_z)
+static void turn_link(
+    double sine, double cosine, const double *from, const double *to, double *out_x, double *out_z)
 {
     const double x = to[0] - from[0];
     const double z = to[2] - from[2];
@@ -134,8 +136,12 @@ static void turn_link(double sine, double cosine, const double *from, const doub
     *out_z = (sine * x) + (cosine * z);
 }
 
-static void link_side(const sim_vehicle_t *vehicle, int side, double rocker, double bogie,
-                      double rocker_sign, linkage_t *linkage)
+static void link_side(const sim_vehicle_t *vehicle,
+                      int side,
+                      double rocker,
+                      double bogie,
+                      double rocker_sign,
+                      linkage_t *linkage)
 {
     const double *pivot = vehicle->rocker_pivot_m[side];
     const double *bogie_pivot = vehicle->bogie_pivot_m[side];
@@ -192,28 +198,34 @@ static void set_linkage(const problem_t *problem, const double *q, linkage_t *li
     link_side(problem->vehicle, 1, -q[Q_ROCKER], q[Q_BOGIE_RIGHT], -1.0, linkage);
 }
 
-static void body_to_site(const problem_t *problem, const iterate_t *iterate, const double *body,
+static void body_to_site(const problem_t *problem,
+                         const iterate_t *iterate,
+                         const double *body,
                          double *site)
 {
     const linkage_t *linkage = &iterate->linkage;
     const double origin[3] = {problem->pose[0], problem->pose[1], iterate->q[Q_Z]};
     for (int axis = 0; axis < 3; axis++)
     {
-        site[axis] = origin[axis] + (linkage->ex[axis] * body[0]) + (linkage->ey[axis] * body[1])
-                   + (linkage->ez[axis] * body[2]);
+        site[axis] = origin[axis] + (linkage->ex[axis] * body[0]) + (linkage->ey[axis] * body[1]) +
+                     (linkage->ez[axis] * body[2]);
     }
 }
 
 /* ------------------------------------------------------------------ wheel contact */
 
 /* rim point at sine s from straight down: centre + r (c ez + s ex) */
-static void rim_point(const linkage_t *linkage, const double *centre, double radius_m, double sine,
-                      double cosine, double *point)
+static inline void rim_point(const linkage_t *linkage,
+                             const double *centre,
+                             double radius_m,
+                             double sine,
+                             double cosine,
+                             double *point)
 {
     for (int axis = 0; axis < 3; axis++)
     {
-        point[axis] = centre[axis]
-                    + (radius_m * ((cosine * linkage->ez[axis]) + (sine * linkage->ex[axis])));
+        point[axis] =
+            centre[axis] + (radius_m * ((cosine * linkage->ez[axis]) + (sine * linkage->ex[axis])));
     }
 }
 
@@ -229,8 +241,8 @@ typedef struct
 } rim_t;
 
 /* gap at h and its slope, the derivative by h; in h the rim needs neither root nor sine */
-static void evaluate_rim(const problem_t *problem, const linkage_t *linkage, const double *centre,
-                         double h, rim_t *rim)
+static inline void evaluate_rim(
+    const problem_t *problem, const linkage_t *linkage, const double *centre, double h, rim_t *rim)
 {
     const double radius_m = problem->vehicle->wheel_radius_m;
     const double inverse = 1.0 / (1.0 + (h * h));
@@ -248,8 +260,8 @@ static void evaluate_rim(const problem_t *problem, const linkage_t *linkage, con
     rim->tangent_north = rate * ((cosine * linkage->ex[0]) - (sine * linkage->ez[0]));
     rim->tangent_east = rate * ((cosine * linkage->ex[1]) - (sine * linkage->ez[1]));
     rim->tangent_down = rate * ((cosine * linkage->ex[2]) - (sine * linkage->ez[2]));
-    rim->slope = (ground.slope_north * rim->tangent_north)
-               + (ground.slope_east * rim->tangent_east) - rim->tangent_down;
+    rim->slope = (ground.slope_north * rim->tangent_north) +
+                 (ground.slope_east * rim->tangent_east) - rim->tangent_down;
 }
 
 /*
@@ -258,8 +270,8 @@ static void evaluate_rim(const problem_t *problem, const linkage_t *linkage, con
  */
 static void make_stationary(rim_t *rim)
 {
-    const double length = (rim->tangent_north * rim->tangent_north)
-                        + (rim->tangent_east * rim->tangent_east);
+    const double length =
+        (rim->tangent_north * rim->tangent_north) + (rim->tangent_east * rim->tangent_east);
     rim->contact.slope_north -= rim->slope * rim->tangent_north / length;
     rim->contact.slope_east -= rim->slope * rim->tangent_east / length;
 }
@@ -269,8 +281,12 @@ static void make_stationary(rim_t *rim)
  * error and is the next place to look where the ground has a crease; where it is smooth the zero of
  * the interpolated slope is. The two alternate.
  */
-static void refine_rim(const problem_t *problem, const linkage_t *linkage, const double *centre,
-                       double low_h, double high_h, contact_t *best)
+static void refine_rim(const problem_t *problem,
+                       const linkage_t *linkage,
+                       const double *centre,
+                       double low_h,
+                       double high_h,
+                       contact_t *best)
 {
     rim_t low;
     rim_t high;
@@ -319,29 +335,62 @@ static double half_tangent(const problem_t *problem, int sample)
     return problem->rim_sine[sample] / (1.0 + problem->rim_cosine[sample]);
 }
 
+/* gaps of the sampled rim into gap[]; returns the least, NaN where there is no ground */
+static double sample_rim(const problem_t *problem,
+                         const linkage_t *linkage,
+                         const double *centre,
+                         double *gap)
+{
+    const sim_terrain_t *terrain = problem->terrain;
+    const double radius_m = problem->vehicle->wheel_radius_m;
+    /* the rim in node units, the same affine map for all samples */
+    const double scale = problem->inverse_resolution;
+    const double u_centre = (centre[0] - terrain->north_min_m) * scale;
+    const double v_centre = (centre[1] - terrain->east_min_m) * scale;
+    const double u_down = linkage->ez[0] * radius_m * scale;
+    const double v_down = linkage->ez[1] * radius_m * scale;
+    const double u_ahead = linkage->ex[0] * radius_m * scale;
+    const double v_ahead = linkage->ex[1] * radius_m * scale;
+    const double z_down = linkage->ez[2] * radius_m;
+    const double z_ahead = linkage->ex[2] * radius_m;
+    double sum = 0.0;
+    double least = INFINITY;
+    for (int sample = 0; sample < RIM_SAMPLES; sample++)
+    {
+        const double sine = problem->rim_sine[sample];
+        const double cosine = problem->rim_cosine[sample];
+        const double u = u_centre + (cosine * u_down) + (sine * u_ahead);
+        const double v = v_centre + (cosine * v_down) + (sine * v_ahead);
+        const int32_t row = (int32_t) u;
+        const int32_t col = (int32_t) v;
+        const float *south = &terrain->z_site_m[((ptrdiff_t) row * terrain->cols) + col];
+        const float *north = south + terrain->cols;
+        const double fu = u - (double) row;
+        const double fv = v - (double) col;
+        const double z_south = (double) south[0] + (fv * ((double) south[1] - (double) south[0]));
+        const double z_north = (double) north[0] + (fv * ((double) north[1] - (double) north[0]));
+        const double z_rim = centre[2] + (cosine * z_down) + (sine * z_ahead);
+        gap[sample] = z_south + (fu * (z_north - z_south)) - z_rim;
+        sum += gap[sample];
+        least = (gap[sample] < least) ? gap[sample] : least;
+    }
+    return isnan(sum) ? (double) NAN : least;
+}
+
 /* nearest point of one disc: sampled along the rim, then every promising minimum refined */
-static void disc_contact(const problem_t *problem, const linkage_t *linkage, const double *centre,
+static void disc_contact(const problem_t *problem,
+                         const linkage_t *linkage,
+                         const double *centre,
                          contact_t *best)
 {
     double gap[RIM_SAMPLES];
-    double gap_min = INFINITY;
-    const double radius_m = problem->vehicle->wheel_radius_m;
-    for (int sample = 0; sample < RIM_SAMPLES; sample++)
+    const double least = sample_rim(problem, linkage, centre, gap);
+    if (isnan(least))
     {
-        double point[3];
-        ground_t ground;
-        rim_point(linkage, centre, radius_m, problem->rim_sine[sample],
-                  problem->rim_cosine[sample], point);
-        sample_ground(problem, point[0], point[1], &ground);
-        gap[sample] = ground.z_m - point[2];
-        gap_min = (gap[sample] < gap_min) ? gap[sample] : gap_min;
-        if (isnan(gap[sample]))
-        {
-            best->gap_m = NAN;
-            return;
-        }
+        best->gap_m = NAN;
+        return;
     }
-    const double limit = ((gap_min < best->gap_m) ? gap_min : best->gap_m) + REFINE_MARGIN_M;
+    const double limit = ((least < best->gap_m) ? least : best->gap_m) + REFINE_MARGIN_M;
     for (int sample = 0; sample < RIM_SAMPLES; sample++)
     {
         const int before = (sample > 0) ? sample - 1 : 0;
@@ -369,7 +418,9 @@ static void point_contact(const problem_t *problem, const double *hub, contact_t
     contact->slope_east = ground.slope_east;
 }
 
-static void wheel_contact(const problem_t *problem, const iterate_t *iterate, int wheel,
+static void wheel_contact(const problem_t *problem,
+                          const iterate_t *iterate,
+                          int wheel,
                           contact_t *contact)
 {
     const sim_vehicle_t *vehicle = problem->vehicle;
@@ -396,9 +447,9 @@ static void wheel_contact(const problem_t *problem, const iterate_t *iterate, in
         const int discs = (vehicle->wheel_kind == SIM_WHEEL_CYLINDER) ? CYLINDER_DISCS : 1;
         for (int disc = 0; (disc < discs) && !isnan(contact->gap_m); disc++)
         {
-            const double offset = (discs == 1)
-                ? 0.0
-                : vehicle->wheel_width_m * (((double)disc / (double)(discs - 1)) - 0.5);
+            const double offset = (discs == 1) ? 0.0
+                                               : vehicle->wheel_width_m *
+                                                     (((double) disc / (double) (discs - 1)) - 0.5);
             const double centre[3] = {hub[0] + (offset * linkage->ey[0]),
                                       hub[1] + (offset * linkage->ey[1]),
                                       hub[2] + (offset * linkage->ey[2])};
@@ -428,8 +479,8 @@ static void evaluate(const problem_t *problem, iterate_t *iterate)
 }
 
 /* row of the Jacobian: d(gap)/dq = slope . d(point xy) - d(point z) */
-static void jacobian_row(const problem_t *problem, const iterate_t *iterate, int wheel,
-                         double slope_weight, double *row)
+static void jacobian_row(
+    const problem_t *problem, const iterate_t *iterate, int wheel, double slope_weight, double *row)
 {
     const linkage_t *linkage = &iterate->linkage;
     const contact_t *contact = &iterate->contact[wheel];
@@ -440,15 +491,14 @@ static void jacobian_row(const problem_t *problem, const iterate_t *iterate, int
                          -1.0};
     const double *ex = linkage->ex;
     const double gx = (g[0] * ex[0]) + (g[1] * ex[1]) + (g[2] * ex[2]);
-    const double gz =
-        (g[0] * linkage->ez[0]) + (g[1] * linkage->ez[1]) + (g[2] * linkage->ez[2]);
+    const double gz = (g[0] * linkage->ez[0]) + (g[1] * linkage->ez[1]) + (g[2] * linkage->ez[2]);
     row[Q_Z] = g[2];
     /* roll turns about the body x axis, pitch about the horizontal axis right of the heading */
-    row[Q_ROLL] = (g[0] * ((ex[1] * arm[2]) - (ex[2] * arm[1])))
-                + (g[1] * ((ex[2] * arm[0]) - (ex[0] * arm[2])))
-                + (g[2] * ((ex[0] * arm[1]) - (ex[1] * arm[0])));
-    row[Q_PITCH] = (g[0] * problem->cos_yaw * arm[2]) + (g[1] * problem->sin_yaw * arm[2])
-                 - (g[2] * ((problem->sin_yaw * arm[1]) + (problem->cos_yaw * arm[0])));
+    row[Q_ROLL] = (g[0] * ((ex[1] * arm[2]) - (ex[2] * arm[1]))) +
+                  (g[1] * ((ex[2] * arm[0]) - (ex[0] * arm[2]))) +
+                  (g[2] * ((ex[0] * arm[1]) - (ex[1] * arm[0])));
+    row[Q_PITCH] = (g[0] * problem->cos_yaw * arm[2]) + (g[1] * problem->sin_yaw * arm[2]) -
+                   (g[2] * ((problem->sin_yaw * arm[1]) + (problem->cos_yaw * arm[0])));
     row[Q_ROCKER] = (gx * linkage->d_rocker[wheel][0]) + (gz * linkage->d_rocker[wheel][2]);
     const double bogie = (gx * linkage->d_bogie[wheel][0]) + (gz * linkage->d_bogie[wheel][2]);
     row[Q_BOGIE_LEFT] = (wheel < 3) ? bogie : 0.0;
@@ -500,7 +550,9 @@ static int solve_linear(double a[UNKNOWN_COUNT][UNKNOWN_COUNT], double *b)
 }
 
 /* Newton step; slope_weight 0 ignores how the ground changes with the wheel's horizontal shift */
-static int newton_step(const problem_t *problem, const iterate_t *iterate, double slope_weight,
+static int newton_step(const problem_t *problem,
+                       const iterate_t *iterate,
+                       double slope_weight,
                        double *step)
 {
     double jacobian[UNKNOWN_COUNT][UNKNOWN_COUNT];
@@ -562,9 +614,9 @@ static int32_t iterate_to_rest(const problem_t *problem, int first_weight, itera
 {
     int32_t count = 0;
     evaluate(problem, iterate);
-    while ((count < problem->vehicle->iterations_max)
-           && (iterate->residual_m > problem->vehicle->tolerance_m) 
-           && improve(problem, first_weight, iterate))
+    while ((count < problem->vehicle->iterations_max) &&
+           (iterate->residual_m > problem->vehicle->tolerance_m) &&
+           improve(problem, first_weight, iterate))
     {
         count++;
     }
@@ -574,7 +626,9 @@ static int32_t iterate_to_rest(const problem_t *problem, int first_weight, itera
 /* ------------------------------------------------------------------ truth */
 
 /* rover-frame coordinates of a SITE point */
-static void site_to_body(const problem_t *problem, const iterate_t *iterate, const double *site,
+static void site_to_body(const problem_t *problem,
+                         const iterate_t *iterate,
+                         const double *site,
                          double *body)
 {
     const linkage_t *linkage = &iterate->linkage;
@@ -603,38 +657,41 @@ typedef struct
 
 static int32_t clamp_index(double value, int32_t count)
 {
-    return (value < 0.0) ? 0 : ((value > (double)(count - 1)) ? count - 1 : (int32_t)value);
+    return (value < 0.0) ? 0 : ((value > (double) (count - 1)) ? count - 1 : (int32_t) value);
 }
 
 /* node index ranges that can hold nodes of the box whose body z lies in [z_min, z_max] */
-static void box_nodes(const problem_t *problem, const iterate_t *iterate, const box_t *box,
-                      const range_t *z_body, int32_t range[4])
+static void box_nodes(const problem_t *problem,
+                      const iterate_t *iterate,
+                      const box_t *box,
+                      const range_t *z_body,
+                      int32_t range[4])
 {
     const sim_terrain_t *terrain = problem->terrain;
-    double low[2] = {INFINITY, INFINITY};
-    double high[2] = {-INFINITY, -INFINITY};
-    for (int corner = 0; corner < 8; corner++)
-    {
-        const double body[3] = {((corner & 1) != 0) ? box->x_max : box->x_min,
-                                ((corner & 2) != 0) ? box->y_max : box->y_min,
-                                ((corner & 4) != 0) ? z_body->high : z_body->low};
-        double site[3];
-        body_to_site(problem, iterate, body, site);
-        for (int axis = 0; axis < 2; axis++)
-        {
-            low[axis] = (site[axis] < low[axis]) ? site[axis] : low[axis];
-            high[axis] = (site[axis] > high[axis]) ? site[axis] : high[axis];
-        }
-    }
+    const linkage_t *linkage = &iterate->linkage;
     const double scale = problem->inverse_resolution;
-    range[0] = clamp_index(ceil((low[0] - terrain->north_min_m) * scale), terrain->rows);
-    range[1] = clamp_index(floor((high[0] - terrain->north_min_m) * scale), terrain->rows);
-    range[2] = clamp_index(ceil((low[1] - terrain->east_min_m) * scale), terrain->cols);
-    range[3] = clamp_index(floor((high[1] - terrain->east_min_m) * scale), terrain->cols);
+    const double middle_body[3] = {0.5 * (box->x_min + box->x_max), 0.5 * (box->y_min + box->y_max),
+                                   0.5 * (z_body->low + z_body->high)};
+    const double first_m[2] = {terrain->north_min_m, terrain->east_min_m};
+    const int32_t count[2] = {terrain->rows, terrain->cols};
+    double middle[3];
+    body_to_site(problem, iterate, middle_body, middle);
+    for (int axis = 0; axis < 2; axis++)
+    {
+        const double reach = (fabs(linkage->ex[axis]) * (box->x_max - middle_body[0])) +
+                             (fabs(linkage->ey[axis]) * (box->y_max - middle_body[1])) +
+                             (fabs(linkage->ez[axis]) * (z_body->high - middle_body[2]));
+        const double node = (middle[axis] - first_m[axis]) * scale;
+        /* rounded up and down; below zero the clamp decides */
+        range[2 * axis] = clamp_index(node - (reach * scale) + 0.999999, count[axis]);
+        range[(2 * axis) + 1] = clamp_index(node + (reach * scale), count[axis]);
+    }
 }
 
 /* lowest and highest (body z - plane) over the terrain nodes inside the box */
-static range_t span_in_box(const problem_t *problem, const iterate_t *iterate, const box_t *box,
+static range_t span_in_box(const problem_t *problem,
+                           const iterate_t *iterate,
+                           const box_t *box,
                            const range_t *z_body)
 {
     const sim_terrain_t *terrain = problem->terrain;
@@ -646,22 +703,22 @@ static range_t span_in_box(const problem_t *problem, const iterate_t *iterate, c
     /* height above the plane is linear in SITE coordinates, like body x and y */
     for (int axis = 0; axis < 3; axis++)
     {
-        up[axis] = linkage->ez[axis] - (box->plane[1] * linkage->ex[axis])
-                 - (box->plane[2] * linkage->ey[axis]);
+        up[axis] = linkage->ez[axis] - (box->plane[1] * linkage->ex[axis]) -
+                   (box->plane[2] * linkage->ey[axis]);
     }
     const double east_m = terrain->east_min_m - problem->pose[1];
     for (int32_t row = range[0]; row <= range[1]; row++)
     {
-        const float *z_site_m = &terrain->z_site_m[(ptrdiff_t)row * terrain->cols];
+        const float *z_site_m = &terrain->z_site_m[(ptrdiff_t) row * terrain->cols];
         const double north_m =
-            terrain->north_min_m + ((double)row * terrain->resolution_m) - problem->pose[0];
+            terrain->north_min_m + ((double) row * terrain->resolution_m) - problem->pose[0];
         const double x_row = linkage->ex[0] * north_m;
         const double y_row = linkage->ey[0] * north_m;
         const double depth_row = (up[0] * north_m) - box->plane[0];
         for (int32_t col = range[2]; col <= range[3]; col++)
         {
-            const double east = east_m + ((double)col * terrain->resolution_m);
-            const double down = (double)z_site_m[col] - iterate->q[Q_Z];
+            const double east = east_m + ((double) col * terrain->resolution_m);
+            const double down = (double) z_site_m[col] - iterate->q[Q_Z];
             const double x = x_row + (linkage->ex[1] * east) + (linkage->ex[2] * down);
             const double y = y_row + (linkage->ey[1] * east) + (linkage->ey[2] * down);
             if ((x >= box->x_min) && (x <= box->x_max) && (y >= box->y_min) && (y <= box->y_max))
@@ -685,7 +742,7 @@ static void contact_plane(const problem_t *problem, const iterate_t *iterate, do
         site_to_body(problem, iterate, iterate->contact[wheel].point_m, body[wheel]);
         for (int axis = 0; axis < 3; axis++)
         {
-            mean[axis] += body[wheel][axis] / (double)SIM_WHEEL_COUNT;
+            mean[axis] += body[wheel][axis] / (double) SIM_WHEEL_COUNT;
         }
     }
     double xx = 0.0;
@@ -715,8 +772,10 @@ static void measure_ground(const problem_t *problem, const iterate_t *iterate, s
     const sim_vehicle_t *vehicle = problem->vehicle;
     /* ground further than this from the frame's origin plane cannot be under a standing rover */
     const range_t z_body = {vehicle->belly_z_m - 1.0, 0.7};
-    const box_t belly = {vehicle->belly_rear_m, vehicle->belly_front_m,
-                         -vehicle->belly_half_width_m, vehicle->belly_half_width_m,
+    const box_t belly = {vehicle->belly_rear_m,
+                         vehicle->belly_front_m,
+                         -vehicle->belly_half_width_m,
+                         vehicle->belly_half_width_m,
                          {vehicle->belly_z_m, 0.0, 0.0}};
     out->clearance_m = span_in_box(problem, iterate, &belly, &z_body).low;
     double plane[3];
@@ -728,8 +787,11 @@ static void measure_ground(const problem_t *problem, const iterate_t *iterate, s
         const double half_length = vehicle->wheel_radius_m;
         const double half_width = 0.5 * vehicle->wheel_width_m;
         const range_t z_wheel = {hub[2] - 0.4, hub[2] + 0.9};
-        const box_t box = {hub[0] - half_length, hub[0] + half_length, hub[1] - half_width,
-                           hub[1] + half_width, {plane[0], plane[1], plane[2]}};
+        const box_t box = {hub[0] - half_length,
+                           hub[0] + half_length,
+                           hub[1] - half_width,
+                           hub[1] + half_width,
+                           {plane[0], plane[1], plane[2]}};
         const range_t span = span_in_box(problem, iterate, &box, &z_wheel);
         const double drop = (span.high >= span.low) ? span.high - span.low : 0.0;
         out->wheel_drop_m = (drop > out->wheel_drop_m) ? drop : out->wheel_drop_m;
@@ -753,7 +815,9 @@ static void fill_unsettled(const problem_t *problem, sim_settled_t *out)
     out->reserved = 0;
 }
 
-static void fill_settled(const problem_t *problem, const iterate_t *iterate, int32_t iterations,
+static void fill_settled(const problem_t *problem,
+                         const iterate_t *iterate,
+                         int32_t iterations,
                          sim_settled_t *out)
 {
     fill_unsettled(problem, out);
@@ -784,7 +848,8 @@ static void fill_settled(const problem_t *problem, const iterate_t *iterate, int
 
 /* ------------------------------------------------------------------ public functions */
 
-static void set_problem(const sim_terrain_t *terrain, const sim_vehicle_t *vehicle,
+static void set_problem(const sim_terrain_t *terrain,
+                        const sim_vehicle_t *vehicle,
                         problem_t *problem)
 {
     problem->terrain = terrain;
@@ -793,7 +858,8 @@ static void set_problem(const sim_terrain_t *terrain, const sim_vehicle_t *vehic
     problem->inverse_resolution = (terrain != NULL) ? 1.0 / terrain->resolution_m : 0.0;
     for (int sample = 0; sample < RIM_SAMPLES; sample++)
     {
-        const double part = (double)((2 * sample) - (RIM_SAMPLES - 1)) / (double)(RIM_SAMPLES - 1);
+        const double part =
+            (double) ((2 * sample) - (RIM_SAMPLES - 1)) / (double) (RIM_SAMPLES - 1);
         const double sine = RIM_SINE_MAX * part;
         problem->rim_sine[sample] = sine;
         problem->rim_cosine[sample] = sqrt(1.0 - (sine * sine));
@@ -888,8 +954,11 @@ static void settle_pose(const problem_t *problem, const sim_settled_t *guess, si
     }
 }
 
-void sim_settle(const sim_terrain_t *terrain, const sim_vehicle_t *vehicle, const double *pose,
-                const sim_settled_t *guess, sim_settled_t *out)
+void sim_settle(const sim_terrain_t *terrain,
+                const sim_vehicle_t *vehicle,
+                const double *pose,
+                const sim_settled_t *guess,
+                sim_settled_t *out)
 {
     problem_t problem;
     set_problem(terrain, vehicle, &problem);
@@ -897,20 +966,26 @@ void sim_settle(const sim_terrain_t *terrain, const sim_vehicle_t *vehicle, cons
     settle_pose(&problem, guess, out);
 }
 
-void sim_settle_path(const sim_terrain_t *terrain, const sim_vehicle_t *vehicle,
-                     const double *poses, int32_t count, int32_t chained, sim_settled_t *out)
+void sim_settle_path(const sim_terrain_t *terrain,
+                     const sim_vehicle_t *vehicle,
+                     const double *poses,
+                     int32_t count,
+                     int32_t chained,
+                     sim_settled_t *out)
 {
     problem_t problem;
     set_problem(terrain, vehicle, &problem);
     for (int32_t i = 0; i < count; i++)
     {
         const int is_warm = (chained != 0) && (i > 0) && (out[i - 1].on_map != 0);
-        set_pose(&problem, &poses[(ptrdiff_t)3 * i]);
+        set_pose(&problem, &poses[(ptrdiff_t) 3 * i]);
         settle_pose(&problem, is_warm ? &out[i - 1] : NULL, &out[i]);
     }
 }
 
-void sim_settle_hubs(const sim_vehicle_t *vehicle, const double *pose, const double *hub_z_site_m,
+void sim_settle_hubs(const sim_vehicle_t *vehicle,
+                     const double *pose,
+                     const double *hub_z_site_m,
                      sim_settled_t *out)
 {
     problem_t problem;

@@ -95,21 +95,30 @@ typedef struct
  * quantity is NaN.
  * guess: a nearby settled state to start from, or NULL to start from the ground under the hubs.
  */
-void sim_settle(const sim_terrain_t *terrain, const sim_vehicle_t *vehicle, const double *pose,
-                const sim_settled_t *guess, sim_settled_t *out);
+void sim_settle(const sim_terrain_t *terrain,
+                const sim_vehicle_t *vehicle,
+                const double *pose,
+                const sim_settled_t *guess,
+                sim_settled_t *out);
 
 /**
  * Settles count poses (x, y, yaw each). With chained != 0 every pose starts from the one before it
  * (a drive), else each starts cold (a survey).
  */
-void sim_settle_path(const sim_terrain_t *terrain, const sim_vehicle_t *vehicle,
-                     const double *poses, int32_t count, int32_t chained, sim_settled_t *out);
+void sim_settle_path(const sim_terrain_t *terrain,
+                     const sim_vehicle_t *vehicle,
+                     const double *poses,
+                     int32_t count,
+                     int32_t chained,
+                     sim_settled_t *out);
 
 /**
  * Settles the linkage alone on six given hub heights (SITE z); contacts are taken one radius under
  * the hubs. Clearance and wheel drop are NaN: there is no terrain.
  */
-void sim_settle_hubs(const sim_vehicle_t *vehicle, const double *pose, const double *hub_z_site_m,
+void sim_settle_hubs(const sim_vehicle_t *vehicle,
+                     const double *pose,
+                     const double *hub_z_site_m,
                      sim_settled_t *out);
 
 /** Number of pyramid floats for a terrain; level_count receives the number of levels. */
@@ -125,8 +134,13 @@ void sim_pyramid_build(const sim_terrain_t *terrain, float *pyramid);
  * range_m receives the distance, or NaN where the ray leaves
  * the map or exceeds range_max_m. A ray that starts below the ground has range 0.
  */
-void sim_raycast(const sim_terrain_t *terrain, const float *pyramid, const double *origin_site_m,
-                 const double *attitude, const double *directions, int32_t count,
-                 double range_max_m, float *range_m);
+void sim_raycast(const sim_terrain_t *terrain,
+                 const float *pyramid,
+                 const double *origin_site_m,
+                 const double *attitude,
+                 const double *directions,
+                 int32_t count,
+                 double range_max_m,
+                 float *range_m);
 
 #endif

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <numeric>
+
+#include "nav_scene.hpp"
+
+namespace
+{
+
+double distance_to(const nav_waydisc_t &goal, const nav_point_t &point)
+{
+    return std::hypot(goal.x_site_m - point.x_m, goal.y_site_m - point.y_m);
+}
+
+bool is_rock(double x_m, double y_m, double x, double y, double radius)
+{
+    return std::hypot(x_m - x, y_m - y) < radius;
+}
+
+nav_zone_t circle(nav_zone_kind_t kind, double x_m, double y_m, double radius_m)
+{
+    nav_zone_t zone = {};
+    zone.kind = kind;
+    zone.shape = NAV_ZONE_CIRCLE;
+    zone.center_x_site_m = x_m;
+    zone.center_y_site_m = y_m;
+    zone.radius_m = radius_m;
+    return zone;
+}
+
+TEST(Tree, on_flat_ground_the_straight_path_is_selected_and_one_metre_of_it_driven)
+{
+    Scene scene;
+    scene.show(flat);
+    const auto out = scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_DOUBLE_EQ(1.0, out->arc.length_m);
+    EXPECT_DOUBLE_EQ(0.0, out->arc.heading_change_rad);
+    EXPECT_EQ(24U, out->ace_evaluations);
+    EXPECT_EQ(1U, out->paths_tested);
+    EXPECT_NEAR(0.60, out->bounds.clearance_min_m, 1e-3);
+    EXPECT_NEAR(6.0, out->path_points[out->path_point_count - 1].x_m, 1e-5);
+    EXPECT_GT(out->global_point_count, 5U);
+    EXPECT_LT(distance_to(scene.goal, out->global_points[out->global_point_count - 1]), 1.6);
+}
+
+TEST(Tree, every_path_has_one_verdict)
+{
+    Scene scene;
+    scene.show([](double x, double y) { return is_rock(x, y, 4.0, 0.0, 0.5) ? 0.6 : 0.0; });
+    const auto out = scene.select(NAV_MODE_AVOID_ALL);
+    const uint32_t sum = std::accumulate(out->rejections, out->rejections + NAV_REASON_COUNT, 0U);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_PATHS), sum);
+    EXPECT_EQ(1U, out->rejections[NAV_REASON_NONE]);
+}
+
+TEST(Tree, paths_are_ordered_by_cost)
+{
+    Scene scene;
+    scene.show([](double x, double y) { return 0.05 * std::sin(3.0 * x) * std::cos(2.0 * y); });
+    scene.select(NAV_MODE_AVOID_ALL);
+    const nav_tree_t &tree = scene.ctx->tree;
+    std::vector<bool> is_seen(NAV_TREE_PATHS, false);
+    for (int k = 0; k < NAV_TREE_PATHS; k++)
+    {
+        is_seen[tree.order[k]] = true;
+        if (k > 0)
+        {
+            EXPECT_LE(tree.path_cost_s[tree.order[k - 1]], tree.path_cost_s[tree.order[k]]);
+        }
+    }
+    EXPECT_TRUE(std::all_of(is_seen.begin(), is_seen.end(), [](bool seen) { return seen; }));
+}
+
+TEST(Tree, a_rock_ahead_is_driven_round)
+{
+    Scene scene;
+    scene.show([](double x, double y) { return is_rock(x, y, 4.0, 0.0, 0.5) ? 0.6 : 0.0; });
+    const auto out = scene.select(NAV_MODE_AVOID_ALL);
+    double nearest_m = 100.0;
+    for (uint32_t k = 0; k < out->path_point_count; k++)
+    {
+        nearest_m =
+            std::min(nearest_m, static_cast<double>(std::hypot(out->path_points[k].x_m - 4.0,
+                                                               out->path_points[k].y_m)));
+    }
+    EXPECT_GT(nearest_m, 0.5 + 0.7);
+    EXPECT_GT(out->rejections[NAV_REASON_CLEARANCE] + out->rejections[NAV_REASON_WHEEL_DROP], 0U);
+}
+
+TEST(Tree, a_goal_behind_is_reached_by_turning_in_place_thirty_degrees_first)
+{
+    Scene scene;
+    scene.goal = {-10.0, 0.3, 1.0};
+    scene.show(flat);
+    const auto out = scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_DOUBLE_EQ(0.0, out->arc.length_m);
+    EXPECT_NEAR(30.0 * DEG, std::fabs(out->arc.heading_change_rad), 1e-9);
+}
+
+TEST(Tree, a_path_ends_where_it_enters_the_waydisc)
+{
+    Scene scene;
+    scene.goal = {1.6, 0.0, 1.0};
+    scene.show(flat);
+    const auto out = scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_NEAR(0.75, out->arc.length_m, 1e-9);
+    EXPECT_DOUBLE_EQ(0.0, out->cost_to_go_s);
+    EXPECT_EQ(3U, out->ace_evaluations);
+    EXPECT_EQ(0U, out->global_point_count);
+}
+
+TEST(Tree, paths_that_lead_away_are_rejected_as_negative_progress)
+{
+    Scene scene([](nav_params_t &params) { params.negative_progress_max_m = 1.0; });
+    scene.show(flat);
+    const auto out = scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_GT(out->rejections[NAV_REASON_NEGATIVE_PROGRESS], 300U);
+}
+
+TEST(Tree, an_enclosed_rover_has_no_path)
+{
+    Scene scene;
+    scene.show(
+        [](double x, double y)
+        {
+            const double r = std::hypot(x, y);
+            return ((r > 2.2) && (r < 3.2)) ? 1.0 : 0.0;
+        });
+    const auto out = scene.select(NAV_MODE_AVOID_ALL, NAV_NO_PATH);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_NO_PATH), out->status);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_PATHS), out->path_index);
+    EXPECT_EQ(0U, out->rejections[NAV_REASON_NONE]);
+}
+
+TEST(Tree, the_budget_bounds_the_evaluations)
+{
+    Scene scene([](nav_params_t &params) { params.ace_budget_poses = 50.0; });
+    scene.show([](double x, double y)
+               { return ((x > 2.0) && (x < 2.3) && (std::fabs(y) < 9.0)) ? 0.5 : 0.0; });
+    const auto out = scene.select(NAV_MODE_AVOID_ALL, NAV_NO_PATH);
+    EXPECT_LE(out->ace_evaluations, 50U + 60U);
+    EXPECT_GT(out->rejections[NAV_REASON_BUDGET], 0U);
+}
+
+TEST(Tree, failures_of_ace_close_costmap_cells)
+{
+    Scene scene;
+    scene.show([](double x, double y)
+               { return ((x > 4.0) && (x < 4.3) && (std::fabs(y) < 3.0)) ? 0.5 : 0.0; });
+    scene.select(NAV_MODE_AVOID_ALL);
+    uint32_t closed = 0;
+    for (const nav_cost_cell_t &cell : scene.ctx->costmap.cells)
+    {
+        closed += (nav_costmap_reason(&cell, &scene.ctx->params, true, true) > NAV_REASON_KIOZ);
+    }
+    EXPECT_GT(closed, 0U);
+}
+
+/* the four modes of SIM, on one scene: a zone and a rock on the straight line */
+
+class Modes : public ::testing::Test
+{
+  protected:
+    void world(bool has_rock, bool has_zone)
+    {
+        scene.zones(has_zone ? std::vector<nav_zone_t>{circle(NAV_ZONE_KEEP_OUT, 4.0, 0.0, 0.8)}
+                             : std::vector<nav_zone_t>{});
+        scene.show([=](double x, double y)
+                   { return (has_rock && is_rock(x, y, 4.0, 0.0, 0.4)) ? 0.45 : 0.0; });
+    }
+
+    Scene scene;
+};
+
+TEST_F(Modes, unguarded_drives_over_the_rock)
+{
+    world(true, false);
+    const auto out = scene.select(NAV_MODE_UNGUARDED);
+    EXPECT_DOUBLE_EQ(0.0, out->arc.heading_change_rad);
+    EXPECT_EQ(0U, out->ace_evaluations);
+}
+
+TEST_F(Modes, unguarded_refuses_at_the_zone_without_another_try)
+{
+    world(false, true);
+    const auto out = scene.select(NAV_MODE_UNGUARDED, NAV_NO_PATH);
+    EXPECT_EQ(1U, out->rejections[NAV_REASON_KIOZ]);
+    EXPECT_EQ(1U, out->paths_tested);
+}
+
+TEST_F(Modes, guarded_refuses_at_the_rock_without_another_try)
+{
+    world(true, false);
+    const auto out = scene.select(NAV_MODE_GUARDED, NAV_NO_PATH);
+    EXPECT_EQ(1U, out->paths_tested);
+    EXPECT_GT(out->rejections[NAV_REASON_CLEARANCE] + out->rejections[NAV_REASON_WHEEL_DROP], 0U);
+}
+
+TEST_F(Modes, guarded_drives_where_nothing_is_in_the_way)
+{
+    world(false, false);
+    EXPECT_DOUBLE_EQ(1.0, scene.select(NAV_MODE_GUARDED)->arc.length_m);
+}
+
+TEST_F(Modes, avoid_koz_goes_round_the_zone_and_ignores_the_rock)
+{
+    world(true, true);
+    const auto out = scene.select(NAV_MODE_AVOID_KOZ);
+    EXPECT_EQ(0U, out->ace_evaluations);
+    for (uint32_t k = 0; k < out->path_point_count; k++)
+    {
+        EXPECT_GE(std::hypot(out->path_points[k].x_m - 4.0, out->path_points[k].y_m), 0.8);
+    }
+    world(true, false);
+    EXPECT_DOUBLE_EQ(0.0, scene.select(NAV_MODE_AVOID_KOZ)->arc.heading_change_rad);
+}
+
+TEST_F(Modes, avoid_all_goes_round_both)
+{
+    world(true, true);
+    const auto out = scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_GT(out->ace_evaluations, 0U);
+    for (uint32_t k = 0; k < out->path_point_count; k++)
+    {
+        EXPECT_GE(std::hypot(out->path_points[k].x_m - 4.0, out->path_points[k].y_m), 0.8);
+    }
+}
+
+TEST_F(Modes, a_goal_off_the_map_is_driven_towards)
+{
+    scene.goal = {60.0, 0.0, 1.0};
+    world(false, false);
+    for (nav_mode_t mode : {NAV_MODE_UNGUARDED, NAV_MODE_AVOID_KOZ, NAV_MODE_AVOID_ALL})
+    {
+        const auto out = scene.select(mode);
+        EXPECT_DOUBLE_EQ(1.0, out->arc.length_m);
+        EXPECT_NEAR(0.0, out->arc.heading_change_rad, 0.1);
+    }
+}
+
+} // namespace

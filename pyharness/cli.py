@@ -1,0 +1,291 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command line: `enav COMMAND`. Heavy modules are imported inside the commands.
+
+Exit codes: 0 done or goal reached, 2 bad input, 3 the drive ended in a fault, 130 interrupted.
+"""
+
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from pyharness.errors import HarnessError
+from sim.errors import SimError
+
+if TYPE_CHECKING:
+    from pyharness.drive import Progress
+
+EXIT_BAD_INPUT = 2
+EXIT_FAULT = 3
+EXIT_INTERRUPTED = 130
+MODES = ("unguarded", "guarded", "avoid_koz", "avoid_all")
+TABLE_FORMATS = ("text", "yaml", "markdown")
+
+
+class Numbers(click.ParamType):  # type: ignore[type-arg]
+    """Numbers separated by commas, e.g. `-40,0,0`."""
+
+    name = "numbers"
+
+    def __init__(self, names: str) -> None:
+        self.names = names
+        self.count = names.count(",") + 1
+
+    def get_metavar(self, *_: Any, **__: Any) -> str:
+        """Return what the help shows."""
+        return self.names
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> list[float]:
+        """Read the text."""
+        try:
+            numbers = [float(part) for part in str(value).split(",")]
+        except ValueError:
+            numbers = []
+        if len(numbers) != self.count:
+            self.fail(f"expected {self.names}, got {value!r}", param, ctx)
+        return numbers
+
+
+class Assignment(click.ParamType):  # type: ignore[type-arg]
+    """`key=value`."""
+
+    name = "key=value"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, str]:
+        """Split the text."""
+        key, sign, text = str(value).partition("=")
+        if not sign or not key:
+            self.fail(f"expected key=value, got {value!r}", param, ctx)
+        return key, text
+
+
+@click.group()
+@click.version_option(package_name="enav-sim", message="%(version)s")
+def cli() -> None:
+    """Simulate the Enhanced Navigation (ENav) of the Mars 2020 rover."""
+
+
+def main() -> None:
+    """Run the command line; every error a user can cause is one line and an exit code."""
+    try:
+        code = cli(standalone_mode=False)
+    except click.ClickException as error:
+        code = _fail(error.format_message())
+    except (HarnessError, SimError) as error:
+        code = _fail(str(error))
+    except (KeyboardInterrupt, click.Abort):
+        click.echo("enav: interrupted", err=True)
+        code = EXIT_INTERRUPTED
+    except BrokenPipeError:
+        sys.stderr.close()
+        code = 0
+    sys.exit(code)
+
+
+def _fail(message: str) -> int:
+    for line in message.splitlines():
+        click.echo(f"enav: {line}", err=True)
+    return EXIT_BAD_INPUT
+
+
+# ------------------------------------------------------------------ enav terrain
+
+
+@cli.group()
+def terrain() -> None:
+    """Make terrains."""
+
+
+@terrain.command("generate")
+@click.option("-o", "out", type=click.Path(path_type=Path), required=True, help="T.pgm to write.")
+@click.option("--recipe", type=click.Path(path_type=Path), help="Recipe, or the YAML of a terrain.")
+@click.option("--size-m", type=float, help="Edge of the square (120).")
+@click.option("--resolution-m", type=float, help="Distance between nodes (0.1).")
+@click.option("--base", type=click.Path(path_type=Path), help="Terrain or DEM to start from.")
+@click.option("--base-center-m", type=Numbers("N,E"), help="Middle, from the middle of the base.")
+@click.option("--base-scale", type=float, help="Factor on the heights of the base.")
+@click.option("--landform", metavar="KIND", help="Made base: crater, cliff, valley, maze, ...")
+@click.option("--slope-deg", type=float, help="Constant slope.")
+@click.option("--slope-azimuth-deg", type=float, help="Up-slope direction; drawn if not given.")
+@click.option("--cfa", type=float, help="Cumulative fractional area of rocks, e.g. 0.07.")
+@click.option(
+    "--undulation",
+    type=Numbers("SCALE_M,SPAN_M"),
+    multiple=True,
+    help="A layer: horizontal scale, height span. May be repeated.",
+)
+@click.option("--rock-diameter-m", type=Numbers("MIN,MAX"), help="Smallest and largest rock.")
+@click.option("--start", type=Numbers("N,E,YAW_DEG"), help="Start of a drive, to clear of rocks.")
+@click.option("--seed", type=int, help="Of everything random.")
+def terrain_generate(out: Path, recipe: Path | None, **options: Any) -> int:
+    """Make one terrain: T.pgm, T.yaml beside it to remake it, T.rocks.csv."""
+    from pyharness.terrain_files import generate_terrain
+    from sim.errors import ConfigError
+
+    try:
+        made = generate_terrain(out, recipe, _recipe_overrides(options))
+    except ConfigError as error:
+        raise _as_options(error, options) from None
+    size_m = made.north_max_m - made.north_min_m + made.resolution_m
+    click.echo(f"{out}: {size_m:g} x {size_m:g} m, {len(made.rocks)} rocks")
+    return 0
+
+
+def _recipe_overrides(options: Mapping[str, Any]) -> dict[str, object]:
+    """Return the keys of a recipe that the options stand for."""
+    given = {key: value for key, value in options.items() if value not in (None, ())}
+    if "base" in given:
+        given["base_file"] = str(given.pop("base").absolute())
+    if "landform" in given:
+        given["landform"] = {"kind": given["landform"]}
+    if "undulation" in given:
+        given["undulation"] = [
+            {"horizontal_scale_m": scale_m, "height_span_m": span_m}
+            for scale_m, span_m in given["undulation"]
+        ]
+    if "rock_diameter_m" in given:
+        low_m, high_m = given.pop("rock_diameter_m")
+        given["rock_diameter_min_m"], given["rock_diameter_max_m"] = low_m, high_m
+    if "start" in given:
+        north_m, east_m, yaw_deg = given.pop("start")
+        given["start_m"], given["start_yaw_deg"] = [north_m, east_m], yaw_deg
+    return given
+
+
+# ------------------------------------------------------------------ enav drive
+
+
+@cli.command("drive")
+@click.option("--terrain", "terrain_file", type=click.Path(), help="T.pgm, or a DEM.")
+@click.option("--start", type=Numbers("N,E,YAW_DEG"), help="Where the rover starts (-40,0,0).")
+@click.option("--goal", type=Numbers("N,E"), help="Where it goes (40,0).")
+@click.option("--mode", type=click.Choice(MODES), help="How it goes there (avoid_all).")
+@click.option("--planner", help="enav, file.py:Class, or an installed planner.")
+@click.option("--scenario", "scenario_file", type=click.Path(path_type=Path), help="YAML file.")
+@click.option("--set", "settings", type=Assignment(), multiple=True, help="Scenario key = value.")
+@click.option("--seed", type=int, help="Of terrain and noise.")
+@click.option("--timeline", type=click.Path(path_type=Path), help="Draw who worked when, as PNG.")
+@click.option("--force", is_flag=True, help="Replace a finished drive.")
+@click.option("-o", "out", type=click.Path(path_type=Path), help="Folder (drives/NAME-SEED).")
+def drive_command(
+    scenario_file: Path | None,
+    settings: tuple[tuple[str, str], ...],
+    timeline: Path | None,
+    force: bool,
+    out: Path | None,
+    **options: Any,
+) -> int:
+    """Run one drive; without arguments the demonstration drive."""
+    from pyharness.drive import check_folder, run_drive
+    from pyharness.scenario import check_places, load_scenario, make_terrain
+    from sim.errors import ConfigError
+
+    overrides = {**_scenario_overrides(options), **dict(settings)}
+    try:
+        scenario = load_scenario(scenario_file, overrides)
+        folder = out or Path("drives") / f"{scenario.name}-{scenario.seed}"
+        check_folder(folder, force)
+        ground = make_terrain(scenario)
+        check_places(scenario, ground, scenario_file, overrides)
+    except ConfigError as error:
+        raise _as_options(error, options) from None
+    with _ProgressBar() as bar:
+        summary = run_drive(scenario, ground, folder, force, bar.show)
+    if timeline is not None:
+        from pyharness.timeline import draw_timeline_of
+
+        draw_timeline_of(folder / "drive.dp", timeline)
+    click.echo(_outcome_text(summary))
+    click.echo(f"{folder}")
+    return 0 if summary["outcome"] == "goal_reached" else EXIT_FAULT
+
+
+def _scenario_overrides(options: Mapping[str, Any]) -> dict[str, object]:
+    """Return the keys of a scenario that the options stand for."""
+    given = {key: value for key, value in options.items() if value is not None}
+    if "terrain_file" in given:
+        given["terrain"] = {"file": given.pop("terrain_file")}
+    if "goal" in given:
+        given["waypoints"] = None
+    return given
+
+
+def _as_options(error: SimError, options: Mapping[str, Any]) -> HarnessError:
+    """Name the option in a message about a key that an option gave."""
+    text = str(error)
+    for key, value in options.items():
+        name = key.removesuffix("_file")
+        if value is not None:
+            text = text.replace(f"--set {name}:", f"--{name.replace('_', '-')}:")
+    return HarnessError(text)
+
+
+def _outcome_text(summary: Mapping[str, Any]) -> str:
+    rate = summary["drive_rate_m_per_h"] or 0.0
+    text = (
+        f"{summary['outcome']}: {summary['distance_driven_m']:.1f} m in"
+        f" {summary['duration_sim_s']:.0f} s ({rate:.0f} m/h),"
+        f" {summary['planning_cycles']} planning cycles"
+    )
+    detail = summary["fault_detail"]
+    return f"{text}\n{detail}" if detail else text
+
+
+class _ProgressBar:
+    """Shows the distance still to go, where there is a terminal to show it on."""
+
+    def __enter__(self) -> "_ProgressBar":
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+        console = Console(stderr=True)
+        self._bar = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TimeElapsedColumn(),
+            console=console,
+            transient=True,
+            disable=not console.is_terminal,
+        )
+        self._task = self._bar.add_task("starting", total=None)
+        self._start_m: float | None = None
+        self._bar.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.stop()
+
+    def show(self, progress: "Progress") -> None:
+        if self._start_m is None:
+            self._start_m = progress.distance_to_goal_m
+        self._bar.update(
+            self._task,
+            total=self._start_m,
+            completed=max(0.0, self._start_m - progress.distance_to_goal_m),
+            description=f"{progress.distance_to_goal_m:6.1f} m to go, {progress.time_s:6.0f} s",
+        )
+
+
+# ------------------------------------------------------------------ enav params, evrs, dps
+
+
+def _table_command(name: str, rows_name: str, about: str) -> None:
+    @cli.command(name, help=about)
+    @click.option("--format", "style", type=click.Choice(TABLE_FORMATS), default="text")
+    def command(style: str) -> int:
+        from pyharness import tables
+
+        rows: Callable[[], Any] = getattr(tables, rows_name)
+        click.echo(tables.FORMATS[style](rows()), nl=False)
+        return 0
+
+
+_table_command("params", "param_rows", "List Navlib's parameters.")
+_table_command("evrs", "evr_rows", "List Navlib's event reports.")
+_table_command("dps", "dp_rows", "List the kinds of data products.")

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: Apache-2.0
+import os
+import random
+import struct
+import zlib
+
+import pytest
+
+from pyharness.dp import Kind, native_schema
+from pyharness.dp_file import BYTE_ORDER_MARK, MAGIC, DpReader, DpWriter
+from pyharness.errors import DpFileError
+
+FILE_HEADER_BYTES = 24
+
+
+@pytest.fixture
+def golden(tmp_path, drive_info, some_records):
+    path = tmp_path / "drive.dp"
+    with DpWriter(path, drive_info) as writer:
+        for record in some_records:
+            writer.write(record)
+    return path
+
+
+def read(path):
+    with DpReader(path) as reader:
+        return list(reader.records()), reader.damage
+
+
+def header_bytes(data):
+    return FILE_HEADER_BYTES + struct.unpack_from("=I", data, 20)[0] + 8
+
+
+def test_what_is_written_is_read(golden, some_records, drive_info):
+    with DpReader(golden) as reader:
+        assert list(reader.records()) == some_records
+        assert reader.damage is None
+        assert reader.info == drive_info
+        assert reader.schema.kinds == native_schema().kinds
+        assert reader.schema.records == native_schema().records
+        assert list(reader.records()) == some_records
+
+
+def test_the_same_records_give_the_same_bytes(golden, tmp_path, drive_info, some_records):
+    with DpWriter(tmp_path / "again.dp", drive_info) as writer:
+        for record in some_records:
+            writer.write(record)
+    assert (tmp_path / "again.dp").read_bytes() == golden.read_bytes()
+
+
+def test_every_part_begins_at_a_multiple_of_eight(golden):
+    data = golden.read_bytes()
+    assert len(data) % 8 == 0
+    assert header_bytes(data) % 8 == 0
+
+
+def test_records_before_the_flush_point_survive_a_killed_writer(tmp_path, drive_info, some_records):
+    writer = DpWriter(tmp_path / "cut.dp", drive_info)
+    writer.write(some_records[0])
+    writer.flush()
+    records, damage = read(tmp_path / "cut.dp")
+    writer.close()
+    assert records == some_records[:1]
+    assert damage is not None
+    assert damage.reason == "the file ends without its end record"
+
+
+@pytest.mark.faults
+def test_a_file_cut_anywhere_gives_all_whole_records_and_the_offset(golden, some_records):
+    data = golden.read_bytes()
+    start = header_bytes(data)
+    ends = [start]
+    for record in some_records:
+        ends.append(ends[-1] + 32 + (len(record.payload) + 7) // 8 * 8)
+    assert ends[-1] == len(data)
+    for size in range(start, len(data), 7):
+        golden.write_bytes(data[:size])
+        records, damage = read(golden)
+        whole = sum(end <= size for end in ends[1:])
+        assert records == some_records[:whole]
+        assert damage is not None
+        assert damage.offset == ends[whole]
+
+
+@pytest.mark.faults
+def test_a_header_cut_anywhere_is_one_error(golden):
+    data = golden.read_bytes()
+    for size in range(0, header_bytes(data), 97):
+        golden.write_bytes(data[:size])
+        with pytest.raises(DpFileError, match="damaged at byte 0"):
+            DpReader(golden)
+
+
+@pytest.mark.faults
+def test_no_flipped_bit_goes_unnoticed(golden, some_records):
+    data = golden.read_bytes()
+    rng = random.Random(1)
+    for _ in range(400):
+        place, bit = rng.randrange(len(data)), 1 << rng.randrange(8)
+        golden.write_bytes(data[:place] + bytes([data[place] ^ bit]) + data[place + 1 :])
+        try:
+            records, damage = read(golden)
+        except DpFileError:
+            assert place < header_bytes(data)
+            continue
+        assert damage is not None
+        assert damage.offset <= place
+        assert records == some_records[: len(records)]
+
+
+@pytest.mark.faults
+def test_swapped_and_repeated_records_are_damage(tmp_path, drive_info, some_records):
+    for order in ([1, 0], [0, 0], [0, 2]):
+        path = tmp_path / f"order{order}.dp"
+        with DpWriter(path, drive_info) as writer:
+            for index in order:
+                writer.write(some_records[index])
+        records, damage = read(path)
+        assert len(records) == (order[0] == 0)
+        assert "record number" in damage.reason
+
+
+def test_bytes_after_the_end_are_reported_at_their_offset(golden, some_records):
+    size = golden.stat().st_size
+    golden.write_bytes(golden.read_bytes() * 2)
+    records, damage = read(golden)
+    assert records == some_records
+    assert str(damage) == f"damaged at byte {size}: bytes after the end record"
+
+
+def test_a_record_longer_than_its_struct_is_damage(tmp_path, drive_info, some_records):
+    record = some_records[0]
+    big = type(record)(Kind.ESTIMATE, 0.0, 0, bytes(5000))
+    with DpWriter(tmp_path / "long.dp", drive_info) as writer:
+        writer.write(big)
+    assert "too long" in read(tmp_path / "long.dp")[1].reason
+
+
+def test_a_file_of_the_other_byte_order_is_read(golden, tmp_path, some_records):
+    data = golden.read_bytes()
+    other = ">" if struct.pack("=I", 1) == struct.pack("<I", 1) else "<"
+    size = struct.unpack_from("=I", data, 20)[0]
+    values = struct.unpack_from("=4I", data, 8)
+    head = MAGIC + struct.pack(f"{other}4I", *values) + data[24 : 24 + size]
+    swapped = head + struct.pack(f"{other}2I", zlib.crc32(head), 0)
+    for record in some_records:
+        payload = record.payload
+        if record.kind == Kind.TRUTH:
+            truth = native_schema().decode(record.kind, payload)
+            payload = truth.astype(truth.dtype.newbyteorder()).tobytes()
+        mark = struct.unpack_from("=I", data, header_bytes(data))[0]
+        fields = (mark, record.kind, len(payload), record.sequence, record.time_s)
+        part = struct.pack(f"{other}4Id", *fields)
+        checks = struct.pack(f"{other}2I", zlib.crc32(part), zlib.crc32(payload))
+        swapped += part + checks + payload + bytes(-len(payload) % 8)
+    assert values[0] == BYTE_ORDER_MARK
+    path = tmp_path / "swapped.dp"
+    path.write_bytes(swapped)
+    with DpReader(path) as reader:
+        truths = [
+            reader.schema.decode(item.kind, item.payload)
+            for item in reader.records()
+            if item.kind == Kind.TRUTH
+        ]
+        assert reader.damage is None
+    assert float(truths[0]["distance_driven_m"]) == 4.0
+
+
+@pytest.mark.faults
+def test_a_text_conversion_is_noticed(golden):
+    golden.write_bytes(golden.read_bytes().replace(b"\r\n", b"\n"))
+    with pytest.raises(DpFileError, match="not a data product file"):
+        DpReader(golden)
+
+
+@pytest.mark.faults
+def test_what_is_no_file_is_refused(tmp_path):
+    os.mkfifo(tmp_path / "fifo")
+    (tmp_path / "empty").touch()
+    for name in ("missing", ".", "fifo", "empty"):
+        with pytest.raises(DpFileError):
+            DpReader(tmp_path / name)
+
+
+def test_an_existing_file_is_not_overwritten(golden, drive_info):
+    with pytest.raises(FileExistsError):
+        DpWriter(golden, drive_info)

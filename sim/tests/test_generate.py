@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Terrains from recipes."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from sim.errors import TerrainError
+from sim.generate import TerrainRecipe, generate, recipe_of
+from sim.landforms import Landform
+from sim.rocks import area_fraction
+from sim.terrain import centred
+from sim.terrain_io import write_terrain
+from sim.undulation import Undulation
+
+
+def test_the_same_recipe_gives_the_same_bytes() -> None:
+    recipe = TerrainRecipe(size_m=20, cfa=0.1, slope_deg=10, seed=9)
+    one, two = generate(recipe), generate(recipe)
+    assert one.z_site_m.tobytes() == two.z_site_m.tobytes()
+    assert one.rocks.tobytes() == two.rocks.tobytes()
+    assert generate(recipe, seed=10).z_site_m.tobytes() != one.z_site_m.tobytes()
+
+
+def test_the_stored_recipe_makes_it_again() -> None:
+    terrain = generate(TerrainRecipe(size_m=20, cfa=0.1), clear=(-3.0, 1.0, 0.5), seed=4)
+    recipe = recipe_of(terrain)
+    assert recipe is not None
+    assert (recipe.seed, recipe.start_m) == (4, (-3.0, 1.0))
+    assert generate(recipe).z_site_m.tobytes() == terrain.z_site_m.tobytes()
+    assert recipe_of(centred(terrain.z_site_m, 0.1)) is None
+
+
+def test_default_size() -> None:
+    terrain = generate(TerrainRecipe())
+    assert terrain.z_site_m.shape == (1200, 1200)
+    assert terrain.north_min_m == pytest.approx(-59.95)
+    assert 0.4 < np.ptp(terrain.z_site_m) < 2.5
+
+
+@pytest.mark.parametrize("azimuth_deg", [0, 90, 200, -45])
+def test_slope_rises_towards_its_azimuth(azimuth_deg: float) -> None:
+    terrain = generate(
+        TerrainRecipe(size_m=20, slope_deg=15, slope_azimuth_deg=azimuth_deg, undulation=())
+    )
+    azimuth = math.radians(azimuth_deg)
+    ahead = terrain.height_at(5 * math.cos(azimuth), 5 * math.sin(azimuth))
+    assert -float(ahead) == pytest.approx(5 * math.tan(math.radians(15)), abs=1e-5)
+    across = terrain.height_at(-5 * math.sin(azimuth), 5 * math.cos(azimuth))
+    assert float(across) == pytest.approx(0.0, abs=1e-5)
+
+
+def test_the_azimuth_is_drawn_from_the_seed() -> None:
+    recipe = TerrainRecipe(size_m=10, slope_deg=15, undulation=())
+    corners = {float(generate(recipe, seed=seed).z_site_m[0, 0]) for seed in (1, 2, 3)}
+    assert len(corners) == 3
+
+
+def test_rocks_cover_what_the_law_says() -> None:
+    recipe = TerrainRecipe(cfa=0.12, seed=1, undulation=())
+    terrain = generate(recipe)
+    expected = float(area_fraction(0.12, 0.1) - area_fraction(0.12, 2.0))
+    listed = float((0.25 * math.pi * terrain.rocks["diameter_m"] ** 2).sum()) / 120.0**2
+    assert listed == pytest.approx(expected, rel=0.05)
+    # rocks overlap and the smallest fall between nodes: what is seen is a little less
+    seen = np.count_nonzero(terrain.z_site_m < -1e-3) / terrain.z_site_m.size
+    assert 0.80 * expected < seen < 1.0 * expected
+
+
+def test_clearing_the_start_changes_nothing_elsewhere() -> None:
+    recipe = TerrainRecipe(size_m=60, cfa=0.15, seed=2, undulation=())
+    open_start = generate(recipe, clear=(-10.0, 0.0, 0.0))
+    rough = generate(recipe)
+    n, e = np.meshgrid(open_start.north_m, open_start.east_m, indexing="ij")
+    strip = (n > -12.5) & (n < -2.0) & (np.abs(e) < 2.2)
+    # texture adds its own centimetre
+    assert -open_start.z_site_m[strip].min() <= 0.12
+    assert -rough.z_site_m[strip].min() > 0.2
+    far = (n < -15) | (n > 0.5) | (np.abs(e) > 5)
+    np.testing.assert_array_equal(open_start.z_site_m[far], rough.z_site_m[far])
+    kept = set(map(tuple, open_start.rocks.tolist()))
+    assert kept < set(map(tuple, rough.rocks.tolist()))
+
+
+def test_rocks_do_not_change_with_the_ground() -> None:
+    level = generate(TerrainRecipe(size_m=30, cfa=0.1, seed=2, undulation=()))
+    sloped = generate(TerrainRecipe(size_m=30, cfa=0.1, seed=2, slope_deg=20))
+    assert level.rocks.tobytes() == sloped.rocks.tobytes()
+
+
+@pytest.mark.parametrize("cfa", [None, 0, 0.0])
+def test_no_cfa_is_no_rocks(cfa: float | None) -> None:
+    assert len(generate(TerrainRecipe(size_m=10, cfa=cfa)).rocks) == 0
+
+
+def test_a_base_file_brings_no_undulation_and_is_scaled(tmp_path: Path) -> None:
+    axis = np.arange(61) - 30.0
+    up = 0.1 * axis[:, None] + 0.002 * axis[None, :] ** 2 + 100
+    path = tmp_path / "base.pgm"
+    write_terrain(centred((-up).astype(np.float32), 1.0), path)
+    terrain = generate(
+        TerrainRecipe(size_m=20, base_file=str(path), base_center_m=(5, -3), base_scale=2.0)
+    )
+    n, e = np.meshgrid(terrain.north_m, terrain.east_m, indexing="ij")
+    expected = 2 * (0.1 * n + 0.002 * ((e - 3) ** 2 - 9))
+    np.testing.assert_allclose(-terrain.z_site_m, expected, atol=0.012)
+    with pytest.raises(TerrainError, match="not inside the base"):
+        generate(TerrainRecipe(size_m=20, base_file=str(path), base_center_m=(25, 0)))
+    with pytest.raises(TerrainError, match="no such file"):
+        generate(TerrainRecipe(size_m=20, base_file=str(tmp_path / "none.pgm")))
+
+
+def test_a_base_with_a_hole_in_the_window_is_refused(tmp_path: Path) -> None:
+    rasterio = pytest.importorskip("rasterio")
+    heights = np.ones((1, 40, 40), np.float32)
+    heights[0, 20, 20] = -9999
+    path = tmp_path / "base.tif"
+    with rasterio.open(
+        path, "w", driver="GTiff", dtype="float32", count=1, height=40, width=40, nodata=-9999,
+        crs="+proj=eqc +R=3396190 +units=m", transform=rasterio.Affine(1, 0, 7, 0, -1, 9),
+    ) as dataset:  # fmt: skip
+        dataset.write(heights)
+    with pytest.raises(TerrainError, match="no-data"):
+        generate(TerrainRecipe(size_m=10, base_file=str(path)))
+    assert generate(TerrainRecipe(size_m=5, base_file=str(path), base_center_m=(-12, -12)))
+
+
+def test_a_landform_is_a_base_with_undulation() -> None:
+    recipe = TerrainRecipe(size_m=30, landform=Landform(kind="crater", height_m=2), undulation=())
+    assert generate(recipe).z_site_m.max() == pytest.approx(2.0, abs=0.01)
+    assert recipe.model_copy(update={"undulation": None}) != recipe
+
+
+def test_a_real_dem_as_base(data_dir: Path) -> None:
+    recipe = TerrainRecipe(
+        base_file=str(data_dir / "gale_hirise_1m.pgm"), base_center_m=(50, -60), cfa=0.07
+    )
+    terrain = generate(recipe)
+    assert np.isfinite(terrain.z_site_m).all()
+    assert 3 < np.ptp(terrain.z_site_m) < 40
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        {"cfa": -0.1},
+        {"cfa": 1.0},
+        {"cfa": math.nan},
+        {"slope_deg": 61},
+        {"size_m": 0},
+        {"size_m": math.inf},
+        {"resolution_m": 0},
+        {"size_m": 10_000, "resolution_m": 0.01},
+        {"size_m": 1, "resolution_m": 1},
+        {"seed": -1},
+        {"seed": 2**64},
+        {"rock_diameter_min_m": 0},
+        {"rock_diameter_min_m": 1, "rock_diameter_max_m": 1},
+        {"base_file": "x", "landform": Landform(kind="crater")},
+        {"undulation": ({"horizontal_scale_m": 0, "height_span_m": 1},)},
+    ],
+)
+def test_bad_recipes_are_refused(bad: dict[str, object]) -> None:
+    with pytest.raises(ValidationError):
+        TerrainRecipe.model_validate(bad)
+
+
+def test_several_undulations_add_up() -> None:
+    layers = (
+        Undulation(horizontal_scale_m=5, height_span_m=1.0),
+        Undulation(horizontal_scale_m=0.2, height_span_m=0.1),
+    )
+    both = generate(TerrainRecipe(size_m=20, undulation=layers))
+    first = generate(TerrainRecipe(size_m=20, undulation=layers[:1]))
+    rest = both.z_site_m - first.z_site_m
+    assert 4 * rest.std() == pytest.approx(0.1, rel=1e-3)

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Undulation statistics."""
+
+import numpy as np
+import pytest
+
+from sim.random_streams import rng_for
+from sim.undulation import Undulation, undulation_up_m
+
+
+@pytest.mark.parametrize("scale_m", [0.05, 0.1, 0.5, 2.0, 10.0])
+def test_two_sigma_span_and_zero_mean(scale_m: float) -> None:
+    layer = Undulation(horizontal_scale_m=scale_m, height_span_m=0.8)
+    heights = undulation_up_m((600, 500), 0.1, layer, rng_for(1, "u"))
+    assert heights.shape == (600, 500)
+    assert 4 * heights.std() == pytest.approx(0.8, rel=1e-9)
+    assert heights.mean() == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("scale_m", [0.5, 1.0, 3.0])
+def test_correlation_falls_to_1_e_at_the_horizontal_scale(scale_m: float) -> None:
+    layer = Undulation(horizontal_scale_m=scale_m, height_span_m=1.0)
+    shift = round(scale_m / 0.1)
+    found = []
+    for seed in range(4):
+        heights = undulation_up_m((900, 900), 0.1, layer, rng_for(seed, "u"))
+        found.append((heights[shift:] * heights[:-shift]).mean() / heights.var())
+    assert np.mean(found) == pytest.approx(np.exp(-1), abs=0.06)
+
+
+def test_a_grid_too_small_for_the_scale_is_level_or_finite() -> None:
+    layer = Undulation(horizontal_scale_m=1000.0, height_span_m=1.0)
+    assert np.isfinite(undulation_up_m((5, 5), 0.1, layer, rng_for(1, "u"))).all()
+
+
+def test_no_span_is_level() -> None:
+    layer = Undulation(horizontal_scale_m=1.0, height_span_m=0.0)
+    assert not undulation_up_m((50, 50), 0.1, layer, rng_for(1, "u")).any()
