@@ -18,7 +18,7 @@ endif
 
 # the extensions are rebuilt when one of these changes; Python files are used where they are
 C_FILES := $(wildcard navlib_c/include/*.h navlib_c/src/*.[ch] navlib_c/stubs/*.[ch] sim/kernels/*.[ch])
-C_FORMATTED := $(C_FILES) $(wildcard navlib_c/tests/*.cpp navlib_c/tests/*.h)
+C_FORMATTED := $(C_FILES) $(wildcard navlib_c/tests/*.cpp navlib_c/tests/*.hpp)
 SETUP := .venv/.setup
 
 # a moved or copied folder, or a changed Python, makes the environment stale

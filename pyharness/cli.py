@@ -15,7 +15,7 @@ from pyharness.errors import HarnessError
 from sim.errors import SimError
 
 if TYPE_CHECKING:
-    from pyharness.drive import Progress
+    from pyharness.drive_folder import Progress
 
 EXIT_BAD_INPUT = 2
 EXIT_FAULT = 3
@@ -182,7 +182,7 @@ def drive_command(
     **options: Any,
 ) -> int:
     """Run one drive; without arguments the demonstration drive."""
-    from pyharness.drive import check_folder, run_drive
+    from pyharness.drive_folder import check_folder, run_drive
     from pyharness.scenario import check_places, load_scenario, make_terrain
     from sim.errors import ConfigError
 

@@ -146,9 +146,10 @@ class Executive:
         self._no_path_count = 0
         self._stuck = StuckWatch(config.stuck)
 
-    def run(self) -> Outcome:
-        """Drive until the last waypoint is reached or a fault ends the drive."""
+    def run(self, zones: Message) -> Outcome:
+        """Set the zones and drive until the last waypoint is reached or a fault ends the drive."""
         try:
+            self._thinker.set_zones(zones)
             self._publish_estimate()
             if self._is_crawling:
                 self._begin_crawl_arc()

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PatchCollection
-from matplotlib.colors import LightSource
+from matplotlib.colors import LightSource, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Polygon, Rectangle
@@ -102,10 +102,10 @@ def _draw_terrain(figure: Figure, axes: Axes, terrain: Terrain, window: Window) 
         terrain.north_min_m + (rows.start - 0.5) * terrain.resolution_m,
         terrain.north_min_m + (rows.stop - 0.5) * terrain.resolution_m,
     )
-    colors = mpl.colormaps["copper"]
+    colors = ListedColormap(mpl.colormaps["copper"](np.linspace(0.25, 0.85, 256)))
     image = axes.imshow(up_m, cmap=colors, origin="lower", extent=extent, alpha=0.0)
     span_m = max(float(np.ptp(up_m)), 1e-6)
-    rgb = colors(0.25 + 0.6 * (up_m - up_m.min()) / span_m)[..., :3]
+    rgb = colors((up_m - up_m.min()) / span_m)[..., :3]
     shaded = np.clip(rgb * (0.35 + 1.1 * shade[..., None]), 0.0, 1.0)
     axes.imshow(shaded, origin="lower", extent=extent, interpolation="nearest")
     bar = figure.colorbar(image, ax=axes, location="bottom", shrink=0.6, pad=0.02, aspect=40)
@@ -298,7 +298,7 @@ def _draw_scale(axes: Axes, window: Window) -> None:
 def _line_handles(history: History) -> list[Any]:
     handles: list[Any] = [
         Line2D([], [], color=TRACK_COLOR, marker="s", markersize=5, label="true track, end"),
-        Line2D([], [], color=ARC_COLOR, marker=".", label="selected arcs"),
+        Line2D([], [], color=ARC_COLOR, marker=".", label="selected arcs, as believed"),
         Line2D([], [], color=START_COLOR, marker="o", linestyle="", label="start, heading"),
         Line2D([], [], color=GOAL_COLOR, marker="+", label="goal waydisc"),
         Line2D([], [], color=MAP_COLOR, linestyle="--", label="heightmap at the end"),

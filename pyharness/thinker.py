@@ -56,6 +56,10 @@ class Thinker:
     planner: Planner
     times: ComputeTimes
 
+    def set_zones(self, request: Message) -> None:
+        """Have the keep-in and keep-out zones replaced."""
+        self._ask(self.planner.set_kioz, "set_kioz", request)
+
     def process(self, image: Image) -> float:
         """Have one image merged; return the compute time."""
         requests = messages.cloud_requests(image.time_s, image.pose, image.image_id, image.points_m)

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from sim.clib import dtype_of, ffi, lib, pointer
 from sim.errors import TerrainError
+from sim.ground import CELL_M, GroundSlope, ground_slope
 from sim.terrain import Terrain
 from sim.vehicle import Vehicle
 
@@ -33,7 +34,7 @@ class SettledState:
         rocker_rad: Left rocker against the body, positive nose-down; the right one is opposite.
         bogie_left_rad: Left bogie against its rocker, positive nose-down; likewise the right.
         clearance_m: Least distance along body z from belly pan to a terrain node under it.
-        wheel_drop_m: Largest height span under one wheel, from the plane of the six contacts.
+        wheel_drop_m: Largest height span in one wheel's footprint, across the slope of the ground.
         contact_site_m: Contact points [6, 3] in SITE: LF, LM, LR, RF, RM, RR.
         residual_m: Largest vertical gap between a wheel and the ground.
     """
@@ -57,10 +58,10 @@ class SettledState:
     on_map: bool
 
 
-def terrain_struct(terrain: Terrain) -> Any:
-    """C view of a terrain; the terrain must outlive it."""
+def terrain_struct(terrain: Terrain, slope: GroundSlope | None = None) -> Any:
+    """C view of a terrain and the slope of its ground; both must outlive it."""
     rows, cols = terrain.z_site_m.shape
-    return ffi.new(
+    view = ffi.new(
         "sim_terrain_t *",
         {
             "z_site_m": pointer(terrain.z_site_m, "const float *"),
@@ -71,6 +72,13 @@ def terrain_struct(terrain: Terrain) -> Any:
             "east_min_m": terrain.east_min_m,
         },
     )
+    if slope is not None:
+        view.slope = pointer(slope.gradient, "const float *")
+        view.slope_rows, view.slope_cols, _ = slope.gradient.shape
+        view.slope_cell_m = CELL_M
+        view.slope_north_min_m = slope.north_min_m
+        view.slope_east_min_m = slope.east_min_m
+    return view
 
 
 def vehicle_struct(vehicle: Vehicle) -> Any:
@@ -106,7 +114,8 @@ class Settler:
             )
         self.terrain = terrain
         self.vehicle = vehicle
-        self._terrain_c = terrain_struct(terrain)
+        self._slope = ground_slope(terrain)
+        self._terrain_c = terrain_struct(terrain, self._slope)
         self._vehicle_c = vehicle_struct(vehicle)
 
     def settle(

@@ -38,7 +38,7 @@ NAV_RECORD(NAV_COST_CELL_FIELDS, nav_cost_cell_t);
     M(nav_cost_cell_t, cells, NAV_COSTMAP_CELLS, "row by row from south")
 NAV_RECORD(NAV_COSTMAP_FIELDS, nav_costmap_t);
 
-/** Sums over the known heightmap cells of a block or a patch; u, v count cells north, east of its middle. */
+/** Sums over the known heightmap cells of a patch; u, v count cells north and east of its middle. */
 typedef struct
 {
     double count;

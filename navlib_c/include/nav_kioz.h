@@ -63,8 +63,8 @@ void nav_kioz_set(nav_kioz_t *kioz, const nav_zone_t *zones, uint32_t zone_count
 double nav_kioz_distance_m(const nav_zone_t *zone, double x_site_m, double y_site_m);
 
 /**
- * Is the point forbidden, with zones grown (keep-out) and shrunk (keep-in) by the margin? The borders
- * belong to the zones.
+ * Is the point forbidden, with zones grown (keep-out) and shrunk (keep-in) by the margin?
+ * The borders belong to the zones.
  */
 bool nav_kioz_forbids(const nav_kioz_t *kioz, double x_site_m, double y_site_m, double margin_m);
 

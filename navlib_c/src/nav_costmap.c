@@ -350,7 +350,7 @@ static nav_cost_cell_t unknown_cell(const nav_params_t *params)
     return cell;
 }
 
-/* Moves the content of the map in place, in the order in which nothing is overwritten before use. */
+/* Moves the content of the map in place, in the order that overwrites nothing before its use. */
 static void shift_cells(nav_costmap_t *map, const nav_params_t *params, int64_t rows, int64_t cols)
 {
     const nav_cost_cell_t empty = unknown_cell(params);

@@ -248,7 +248,7 @@ static void reset(nav_global_t *global,
     global->heap_count = 0U;
 }
 
-/* Goal on the map: the free cells inside the waydisc, or else the free cell nearest to its centre. */
+/* Goal on the map: the free cells inside the waydisc, or else the free cell nearest to it. */
 static void seed_inside(nav_global_t *global,
                         const nav_costmap_t *map,
                         const nav_waydisc_t *goal,
@@ -280,32 +280,48 @@ static void seed_inside(nav_global_t *global,
     }
 }
 
+/* The row or column of the edge that faces a goal beyond it; -1 when the goal is not beyond. */
+static int32_t facing_edge(double goal_m, double cell_m, int32_t origin)
+{
+    /* as nav_costmap_find sees it: a goal that it does not find faces an edge for certain */
+    const double index = floor(goal_m * (1.0 / cell_m));
+    int32_t edge = -1;
+
+    if (index < (double) origin)
+    {
+        edge = 0;
+    }
+    else if (index >= ((double) origin + (double) NAV_SIZE))
+    {
+        edge = NAV_SIZE - 1;
+    }
+    else
+    {
+        /* beside the map in the other direction */
+    }
+    return edge;
+}
+
 /* Goal off the map: the free cells of the edges that face it. */
 static void seed_outside(nav_global_t *global,
                          const nav_costmap_t *map,
                          const nav_params_t *params,
                          const nav_waydisc_t *goal)
 {
-    const double south_m = (double) map->origin_row * map->cell_m;
-    const double west_m = (double) map->origin_col * map->cell_m;
-    const double side_m = (double) NAV_SIZE * map->cell_m;
-    const bool is_south = goal->x_site_m < south_m;
-    const bool is_north = goal->x_site_m >= (south_m + side_m);
-    const bool is_west = goal->y_site_m < west_m;
-    const bool is_east = goal->y_site_m >= (west_m + side_m);
+    const int32_t edge_row = facing_edge(goal->x_site_m, map->cell_m, map->origin_row);
+    const int32_t edge_col = facing_edge(goal->y_site_m, map->cell_m, map->origin_col);
 
     for (uint32_t cell = 0U; cell < NAV_CELLS; cell++)
     {
         const int32_t row = (int32_t) cell / NAV_SIZE;
         const int32_t col = (int32_t) cell % NAV_SIZE;
-        const bool is_facing = (is_south && (row == 0)) || (is_north && (row == (NAV_SIZE - 1))) ||
-                               (is_west && (col == 0)) || (is_east && (col == (NAV_SIZE - 1)));
+        const bool is_facing = (row == edge_row) || (col == edge_col);
 
         if (is_facing && (!is_blocked(global, cell)))
         {
-            lower(global, cell,
-                  distance_to_cell_m(map, cell, goal->x_site_m, goal->y_site_m) *
-                      unknown_cost_s_per_m(params));
+            const double way_m = distance_to_cell_m(map, cell, goal->x_site_m, goal->y_site_m);
+
+            lower(global, cell, way_m * unknown_cost_s_per_m(params));
         }
     }
 }

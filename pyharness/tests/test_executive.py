@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pyharness.dp import Kind, native_schema
+from pyharness.dp import Kind, native_schema, new_message
 from pyharness.executive import Executive, SafetyWatch
 from pyharness.executive_config import ComputeTimes, ExecutiveConfig
 from pyharness.params import param_values
@@ -44,7 +44,7 @@ class Drive:
         return np.zeros((5, 3), np.float32)
 
     def run(self):
-        self.outcome = self.executive.run()
+        self.outcome = self.executive.run(new_message(Kind.SET_KIOZ_IN))
         return self.outcome
 
     def calls(self, name):

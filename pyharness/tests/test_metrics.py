@@ -30,18 +30,8 @@ def history(drive_info):
     answer["rejections"][Reason.COST] = 3
     answer["arc"]["length_m"] = 1.0
     stream.publish(Kind.SELECT_ARC_OUT, 1.0, answer.tobytes())
-    for time_s, driven_m, clearance_m, rocker_rad in (
-        (10.0, 1.0, 0.5, -0.1),
-        (20.0, 2.0, 0.4, 0.0),
-    ):
-        send(
-            Kind.TRUTH,
-            time_s,
-            time_s=time_s,
-            distance_driven_m=driven_m,
-            clearance_m=clearance_m,
-            rocker_rad=rocker_rad,
-        )
+    send(Kind.TRUTH, distance_driven_m=1.0, time_s=10.0, clearance_m=0.5, rocker_rad=-0.1)
+    send(Kind.TRUTH, distance_driven_m=2.0, time_s=20.0, clearance_m=0.4)
     send(Kind.SELECT_ARC_IN, time_s=21.0)
     answer["ace_evaluations"] = 300
     answer["status"] = Status.NO_PATH

@@ -639,14 +639,14 @@ static void site_to_body(const problem_t *problem,
     body[2] = (linkage->ez[0] * d[0]) + (linkage->ez[1] * d[1]) + (linkage->ez[2] * d[2]);
 }
 
-/* a body-frame box in x and y, and the plane from which body z is measured */
+/* a body-frame box in x and y, and the SITE unit vector along which depth is measured */
 typedef struct
 {
     double x_min;
     double x_max;
     double y_min;
     double y_max;
-    double plane[3];
+    double down[3];
 } box_t;
 
 typedef struct
@@ -688,7 +688,7 @@ static void box_nodes(const problem_t *problem,
     }
 }
 
-/* lowest and highest (body z - plane) over the terrain nodes inside the box */
+/* lowest and highest depth under the rover origin over the terrain nodes inside the box */
 static range_t span_in_box(const problem_t *problem,
                            const iterate_t *iterate,
                            const box_t *box,
@@ -698,14 +698,7 @@ static range_t span_in_box(const problem_t *problem,
     const linkage_t *linkage = &iterate->linkage;
     range_t span = {INFINITY, -INFINITY};
     int32_t range[4];
-    double up[3];
     box_nodes(problem, iterate, box, z_body, range);
-    /* height above the plane is linear in SITE coordinates, like body x and y */
-    for (int axis = 0; axis < 3; axis++)
-    {
-        up[axis] = linkage->ez[axis] - (box->plane[1] * linkage->ex[axis]) -
-                   (box->plane[2] * linkage->ey[axis]);
-    }
     const double east_m = terrain->east_min_m - problem->pose[1];
     for (int32_t row = range[0]; row <= range[1]; row++)
     {
@@ -714,7 +707,7 @@ static range_t span_in_box(const problem_t *problem,
             terrain->north_min_m + ((double) row * terrain->resolution_m) - problem->pose[0];
         const double x_row = linkage->ex[0] * north_m;
         const double y_row = linkage->ey[0] * north_m;
-        const double depth_row = (up[0] * north_m) - box->plane[0];
+        const double depth_row = box->down[0] * north_m;
         for (int32_t col = range[2]; col <= range[3]; col++)
         {
             const double east = east_m + ((double) col * terrain->resolution_m);
@@ -723,7 +716,7 @@ static range_t span_in_box(const problem_t *problem,
             const double y = y_row + (linkage->ey[1] * east) + (linkage->ey[2] * down);
             if ((x >= box->x_min) && (x <= box->x_max) && (y >= box->y_min) && (y <= box->y_max))
             {
-                const double depth = depth_row + (up[1] * east) + (up[2] * down);
+                const double depth = depth_row + (box->down[1] * east) + (box->down[2] * down);
                 span.low = (depth < span.low) ? depth : span.low;
                 span.high = (depth > span.high) ? depth : span.high;
             }
@@ -767,35 +760,62 @@ static void contact_plane(const problem_t *problem, const iterate_t *iterate, do
     plane[0] = mean[2] - (plane[1] * mean[0]) - (plane[2] * mean[1]);
 }
 
-static void measure_ground(const problem_t *problem, const iterate_t *iterate, sim_settled_t *out)
+/* unit vector down across the slope of the ground at the pose, NaN where there is none */
+static void ground_normal(const problem_t *problem, double *down)
+{
+    const sim_terrain_t *terrain = problem->terrain;
+    const double row = (problem->pose[0] - terrain->slope_north_min_m) / terrain->slope_cell_m;
+    const double col = (problem->pose[1] - terrain->slope_east_min_m) / terrain->slope_cell_m;
+    double gradient[2] = {NAN, NAN};
+    if ((terrain->slope != NULL) && (row >= 0.0) && (col >= 0.0) &&
+        (row < (double) terrain->slope_rows) && (col < (double) terrain->slope_cols))
+    {
+        const ptrdiff_t cell = ((ptrdiff_t) row * terrain->slope_cols) + (ptrdiff_t) col;
+        gradient[0] = (double) terrain->slope[2 * cell];
+        gradient[1] = (double) terrain->slope[(2 * cell) + 1];
+    }
+    const double norm =
+        sqrt(1.0 + (gradient[0] * gradient[0]) + (gradient[1] * gradient[1]));
+    down[0] = -gradient[0] / norm;
+    down[1] = -gradient[1] / norm;
+    down[2] = 1.0 / norm;
+}
+
+static double clearance_m(const problem_t *problem, const iterate_t *iterate)
 {
     const sim_vehicle_t *vehicle = problem->vehicle;
     /* ground further than this from the frame's origin plane cannot be under a standing rover */
     const range_t z_body = {vehicle->belly_z_m - 1.0, 0.7};
+    const double *ez = iterate->linkage.ez;
     const box_t belly = {vehicle->belly_rear_m,
                          vehicle->belly_front_m,
                          -vehicle->belly_half_width_m,
                          vehicle->belly_half_width_m,
-                         {vehicle->belly_z_m, 0.0, 0.0}};
-    out->clearance_m = span_in_box(problem, iterate, &belly, &z_body).low;
-    double plane[3];
-    contact_plane(problem, iterate, plane);
-    out->wheel_drop_m = 0.0;
-    for (int wheel = 0; wheel < SIM_WHEEL_COUNT; wheel++)
+                         {ez[0], ez[1], ez[2]}};
+    return span_in_box(problem, iterate, &belly, &z_body).low - vehicle->belly_z_m;
+}
+
+static double wheel_drop_m(const problem_t *problem, const iterate_t *iterate)
+{
+    const double half_length = problem->vehicle->wheel_radius_m;
+    const double half_width = 0.5 * problem->vehicle->wheel_width_m;
+    double down[3];
+    ground_normal(problem, down);
+    double largest = isnan(down[2]) ? NAN : 0.0;
+    for (int wheel = 0; (wheel < SIM_WHEEL_COUNT) && !isnan(largest); wheel++)
     {
         const double *hub = iterate->linkage.hub_body_m[wheel];
-        const double half_length = vehicle->wheel_radius_m;
-        const double half_width = 0.5 * vehicle->wheel_width_m;
         const range_t z_wheel = {hub[2] - 0.4, hub[2] + 0.9};
         const box_t box = {hub[0] - half_length,
                            hub[0] + half_length,
                            hub[1] - half_width,
                            hub[1] + half_width,
-                           {plane[0], plane[1], plane[2]}};
+                           {down[0], down[1], down[2]}};
         const range_t span = span_in_box(problem, iterate, &box, &z_wheel);
         const double drop = (span.high >= span.low) ? span.high - span.low : 0.0;
-        out->wheel_drop_m = (drop > out->wheel_drop_m) ? drop : out->wheel_drop_m;
+        largest = (drop > largest) ? drop : largest;
     }
+    return largest;
 }
 
 static void fill_unsettled(const problem_t *problem, sim_settled_t *out)
@@ -842,7 +862,8 @@ static void fill_settled(const problem_t *problem,
     }
     if (problem->terrain != NULL)
     {
-        measure_ground(problem, iterate, out);
+        out->clearance_m = clearance_m(problem, iterate);
+        out->wheel_drop_m = wheel_drop_m(problem, iterate);
     }
 }
 

@@ -34,6 +34,13 @@ typedef struct
     double resolution_m;
     double north_min_m;
     double east_min_m;
+    /* slope of the ground around each cell: z down per metre north and east; NULL if not needed */
+    const float *slope;
+    int32_t slope_rows;
+    int32_t slope_cols;
+    double slope_cell_m;
+    double slope_north_min_m;
+    double slope_east_min_m;
 } sim_terrain_t;
 
 /** Geometry in the rover frame with all joints at zero. Wheels: LF, LM, LR, RF, RM, RR. */
@@ -59,8 +66,8 @@ typedef struct
  * rocker_rad is the left rocker against the body, positive nose-down; the differential makes the
  * right one its negative. A bogie angle is the bogie against its rocker, positive nose-down.
  * clearance_m: smallest distance, along the body z axis, from the belly pan down to a terrain node
- * inside the belly box. wheel_drop_m: largest span of terrain under one wheel box, measured along
- * the body z axis from the plane fitted to the six contacts.
+ * inside the belly box. wheel_drop_m: largest span of terrain in one wheel's box, measured across
+ * the slope of the ground around the rover; NaN without that slope.
  */
 typedef struct
 {
