@@ -182,7 +182,7 @@ def drive_command(
     **options: Any,
 ) -> int:
     """Run one drive; without arguments the demonstration drive."""
-    from pyharness.drive_folder import check_folder, run_drive
+    from pyharness.drive_folder import check_folder, partial_folder, run_drive
     from pyharness.scenario import check_places, load_scenario, make_terrain
     from sim.errors import ConfigError
 
@@ -195,8 +195,12 @@ def drive_command(
         check_places(scenario, ground, scenario_file, overrides)
     except ConfigError as error:
         raise _as_options(error, options) from None
-    with _ProgressBar() as bar:
-        summary = run_drive(scenario, ground, folder, force, bar.show)
+    try:
+        with _ProgressBar() as bar:
+            summary = run_drive(scenario, ground, folder, force, bar.show)
+    except KeyboardInterrupt:
+        click.echo(f"enav: what was recorded so far is in {partial_folder(folder)}", err=True)
+        raise
     if timeline is not None:
         from pyharness.timeline import draw_timeline_of
 

@@ -55,7 +55,7 @@ def run_drive(
     """
     check_folder(folder, force)
     planner_class = load_planner(scenario.planner)
-    partial = folder.with_name(f"{folder.name}.partial")
+    partial = partial_folder(folder)
     try:
         if partial.exists():
             shutil.rmtree(partial)
@@ -65,6 +65,11 @@ def run_drive(
     except OSError as error:
         raise OutputError(f"{error.filename or partial}: {error.strerror}") from error
     return summary
+
+
+def partial_folder(folder: Path) -> Path:
+    """Return what a folder is called until it is complete."""
+    return folder.with_name(f"{folder.name}.partial")
 
 
 def check_folder(folder: Path, force: bool) -> None:

@@ -17,7 +17,7 @@ stands where it has to look and think before it may move. In planning cycle k ar
 import math
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 
 import numpy as np
@@ -421,7 +421,7 @@ class Executive:
         selection, duration_s = self._thinker.select(
             self._world.time_s,
             pose,
-            self._uncertainty(abs(remaining.length_m)),
+            self._selection_uncertainty(abs(remaining.length_m)),
             goal,
             self._arc,
         )
@@ -481,6 +481,11 @@ class Executive:
         """What is still to be driven of it; nothing when the rover stands."""
         fraction = self._world.arc_fraction if self._motion is Motion.DRIVING else 1.0
         return self._arc.part(1.0 - fraction)
+
+    def _selection_uncertainty(self, remaining_m: float) -> Uncertainty:
+        uncertainty = self._uncertainty(remaining_m)
+        margin_m = self._unsafe_count * self._config.uncertainty.unsafe_margin_m
+        return replace(uncertainty, position_m=uncertainty.position_m + margin_m)
 
     def _uncertainty(self, remaining_m: float) -> Uncertainty:
         since_fix_m = self._driven_m + abs(self._driven_part.length_m) - self._fixed_m

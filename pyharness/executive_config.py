@@ -42,6 +42,9 @@ class PoseUncertainty(_Section):
     deviation_per_m: Share = 0.03  # from the part of the arc that is still to be driven: slip
     yaw_base_deg: Annotated[float, Field(ge=0, le=30)] = 0.2
     yaw_per_m_deg: Annotated[float, Field(ge=0, le=30)] = 0.3
+    # added to a selection for every time in a row that the selected arc turned out unsafe: what was
+    # only just passed between two evaluated poses is not selected again
+    unsafe_margin_m: Share = 0.03
     global_sigmas: Annotated[float, Field(ge=0, le=10)] = 3.0  # zones grow by that many sigmas
 
 

@@ -40,6 +40,11 @@ class Navlib:
         if answer["status"] != Status.OK:
             raise NavlibError(f"nav_init: {status_text(int(answer['status']))}")
 
+    @property
+    def context(self) -> Any:
+        """The C context, to look at."""
+        return self._ctx
+
     def set_kioz(self, request: Message) -> Message:
         """Replace the keep-in and keep-out zones."""
         return self._call(lib.nav_set_kioz, "set_kioz", Kind.SET_KIOZ_OUT, request)

@@ -2,6 +2,7 @@
 """Scenarios: everything that decides how a drive goes, from YAML and the command line."""
 
 import math
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
@@ -45,6 +46,7 @@ PRODUCT_LEVELS: Mapping[str, float] = {"inputs": 0.0, "display": 1.0, "full": 2.
 
 # two arcs of 1 m: the rover decides every metre, and VO errors of a drive are below the other one
 RADIUS_DEFAULT_M = 2.0
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
 GOAL_DEFAULT_M = (40.0, 0.0)
 # wheels and belly stay on the grid at any heading
 MARGIN_M = 2.0
@@ -152,6 +154,13 @@ else:
     )
 
 
+def _check_name(name: str) -> str:
+    """Refuse names that cannot be part of a folder's name."""
+    if not NAME.fullmatch(name):
+        raise ValueError(f"expected letters, digits, '.', '_' and '-', got {name!r}")
+    return name
+
+
 def _vehicle_tag(value: object) -> str:
     return "path" if isinstance(value, str) else "inline"
 
@@ -164,7 +173,7 @@ VehicleSection = Annotated[
 class Scenario(ConfigModel):
     """A drive. What is left out has a default; `resolve` fills it in."""
 
-    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]{0,99}$")] = "demo"
+    name: Annotated[str, AfterValidator(_check_name)] = "demo"
     seed: Annotated[int, Field(ge=0, le=SEED_MAX)] = 0
     terrain: TerrainSection = TerrainSection(cfa=0.07)
     start: tuple[float, float, float] = (-40.0, 0.0, 0.0)  # north, east, yaw in degrees

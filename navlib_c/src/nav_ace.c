@@ -31,8 +31,8 @@
 #define WHEEL_TRAVEL_M 0.35
 #define WHEEL_SWAY 0.8
 
-/* Height of what stands in a wheel's box over the body's ground level, that leans with attitude. */
-#define WHEEL_LEAN_M 0.2
+/* Largest distance in height between a wheel's hub and what stands in its box. */
+#define WHEEL_LEAN_M 0.6
 
 /* Terrain whose foot is this far times the slope outside a box can still stand in it. */
 #define ETA_SCAN_M 1.0
@@ -51,6 +51,7 @@ typedef struct
     double half[NAV_LINKAGE_STATES];
     double forward_m[NAV_WHEELS]; /* places of the wheels in the middle state */
     double right_m[NAV_WHEELS];
+    double height_m[NAV_WHEELS];
 } range_t;
 
 /* Flat standing: m, and rad for roll, pitch, rocker, bogies. */
@@ -78,6 +79,16 @@ typedef struct
     double v_m;
 } growth_t;
 
+/** The box of a wheel, and how it leans with the body. */
+typedef struct
+{
+    nav_box_t box;
+    growth_t growth;
+    double hub_m; /* height of the hub */
+    double pitch_rad;
+    double roll_rad;
+} footprint_t;
+
 /** What the cells in a wheel's box hold. */
 typedef struct
 {
@@ -100,6 +111,7 @@ typedef struct
     double state[NAV_LINKAGE_STATES];
     double half[NAV_LINKAGE_STATES];
     double inverse[NAV_LINKAGE_STATES][NAV_WHEELS];
+    double wheel_middle_m[NAV_WHEELS];
     double wheel_half_m[NAV_WHEELS];
     double wheel_half_max_m;
 } linkage_t;
@@ -242,31 +254,37 @@ static nav_box_t scanned(const view_t *view, const nav_box_t *box)
 
 /** Takes one cell into a wheel's span; raises hub_high_m where the wheel could stand on it. */
 static void span_point(const view_t *view,
-                       const nav_box_t *box,
-                       const growth_t *growth,
+                       const footprint_t *footprint,
                        const nav_ground_point_t *point,
                        span_t *span)
 {
-    const double du_m = fabs(point->u_m - box->u_m);
-    const double dv_m = fabs(point->v_m - box->v_m);
-    if ((du_m <= box->half_u_m) && (dv_m <= box->half_v_m))
+    const nav_box_t *box = &footprint->box;
+    const double du_m = point->u_m - box->u_m;
+    const double dv_m = point->v_m - box->v_m;
+    /* the box stands upright on the body, the wheel's hub in its middle */
+    const double above_m = point->eta_m - footprint->hub_m;
+    const double leaned_u_m = du_m + (footprint->pitch_rad * above_m);
+    const double leaned_v_m = dv_m - (footprint->roll_rad * above_m);
+    if ((fabs(leaned_u_m) <= box->half_u_m) && (fabs(leaned_v_m) <= box->half_v_m))
     {
         span->eta_min_m = nav_min(span->eta_min_m, point->eta_m);
         span->eta_max_m = nav_max(span->eta_max_m, point->eta_m);
-        if (dv_m <= growth->v_m)
-        {
-            const double along_m = nav_max(du_m - growth->u_m, 0.0);
-            span->hub_high_m =
-                nav_max(span->hub_high_m, point->eta_m + wheel_reach_m(view, along_m));
-        }
+    }
+    const double along_m = nav_max(fabs(du_m) - footprint->growth.u_m, 0.0);
+    if ((fabs(dv_m) <= footprint->growth.v_m) && (along_m <= view->params->wheel_radius_m))
+    {
+        span->hub_high_m =
+            nav_max(span->hub_high_m, point->eta_m + wheel_reach_m(view, along_m));
     }
 }
 
 /** What the cells in a wheel's box hold. */
-static span_t wheel_span(const view_t *view, const nav_box_t *box, const growth_t *growth)
+static span_t wheel_span(const view_t *view, const footprint_t *footprint)
 {
     span_t span = {NAV_ETA_NONE, -NAV_ETA_NONE, -NAV_ETA_NONE, 0U, 0U};
-    const nav_box_t wide = scanned(view, box);
+    nav_box_t wide = scanned(view, &footprint->box);
+    wide.half_u_m += fabs(footprint->pitch_rad) * ETA_SCAN_M;
+    wide.half_v_m += fabs(footprint->roll_rad) * ETA_SCAN_M;
     const nav_columns_t rows = nav_ground_rows(&view->ground, &wide);
     for (int32_t row = rows.first; row <= rows.last; row++)
     {
@@ -280,7 +298,7 @@ static span_t wheel_span(const view_t *view, const nav_box_t *box, const growth_
             span.cell_count++;
             if (nav_ground_cell(&view->ground, row, col, &point))
             {
-                span_point(view, box, growth, &point, &span);
+                span_point(view, footprint, &point, &span);
             }
             else
             {
@@ -315,6 +333,23 @@ static void line_interval(const double eta_m[SAMPLES_MAX],
     }
 }
 
+/** Highest a hub can stand on the corners of the surface along one side of a wheel's places; with the
+ * cells between the sides these are all corners the wheel can meet. */
+static double side_high_m(const view_t *view, const nav_box_t *places, double v_m)
+{
+    const double reach_m = places->half_u_m + view->params->wheel_radius_m;
+    nav_crossings_t crossings;
+    double high_m = -NAV_ETA_NONE;
+    nav_ground_crossings(&view->ground, places->u_m, v_m, reach_m, &crossings);
+    for (uint32_t k = 0U; k < crossings.count; k++)
+    {
+        const double along_m =
+            nav_max(fabs(crossings.foot_u_m[k] - places->u_m) - places->half_u_m, 0.0);
+        high_m = nav_max(high_m, crossings.eta_m[k] + wheel_reach_m(view, along_m));
+    }
+    return high_m;
+}
+
 /** Heights of a wheel's lowest point over all places the wheel can be. */
 static interval_t wheel_interval(const view_t *view, const nav_box_t *places, double high_m)
 {
@@ -343,26 +378,49 @@ static interval_t wheel_interval(const view_t *view, const nav_box_t *places, do
         }
         line_interval(eta_m, reach_m, grow_count, disc_count, &hub);
     }
+    hub.high_m =
+        nav_max(hub.high_m, side_high_m(view, places, places->v_m - places->half_v_m));
+    hub.high_m =
+        nav_max(hub.high_m, side_high_m(view, places, places->v_m + places->half_v_m));
     hub.low_m -= radius_m;
     hub.high_m -= radius_m;
     return hub;
 }
 
 /** Where the feet of what a wheel stands on can be, for terrain heights within the span. */
-static nav_box_t wheel_places(const view_t *view,
-                              const nav_box_t *box,
-                              const growth_t *growth,
-                              const span_t *span)
+static nav_box_t wheel_places(const view_t *view, const footprint_t *footprint, const span_t *span)
 {
     const double above_m = 0.5 * (span->eta_max_m + span->eta_min_m) / view->ground.cos_slope;
     const double reach_m = 0.5 * (span->eta_max_m - span->eta_min_m) / view->ground.cos_slope;
     const nav_box_t places = {
-        box->u_m - (above_m * view->ground.forward_up),
-        box->v_m - (above_m * view->ground.right_up),
-        nav_min(growth->u_m + (reach_m * fabs(view->ground.forward_up)), GROWTH_MAX_M),
-        nav_min(growth->v_m + (reach_m * fabs(view->ground.right_up)), GROWTH_MAX_M),
+        footprint->box.u_m - (above_m * view->ground.forward_up),
+        footprint->box.v_m - (above_m * view->ground.right_up),
+        nav_min(footprint->growth.u_m + (reach_m * fabs(view->ground.forward_up)), GROWTH_MAX_M),
+        nav_min(footprint->growth.v_m + (reach_m * fabs(view->ground.right_up)), GROWTH_MAX_M),
     };
     return places;
+}
+
+static footprint_t wheel_footprint(const view_t *view, const range_t *range, uint32_t wheel)
+{
+    const growth_t growth = growth_wheel(view, range, wheel);
+    const nav_ground_point_t at =
+        from_body(view, range->middle, range->forward_m[wheel], range->right_m[wheel]);
+    const footprint_t footprint = {
+        {
+            at.u_m,
+            at.v_m,
+            view->params->wheel_radius_m + growth.u_m +
+                (range->half[NAV_LINKAGE_PITCH] * WHEEL_LEAN_M),
+            (0.5 * view->params->wheel_width_m) + growth.v_m +
+                (range->half[NAV_LINKAGE_ROLL] * WHEEL_LEAN_M),
+        },
+        growth,
+        range->height_m[wheel] + view->params->wheel_radius_m,
+        range->middle[NAV_LINKAGE_PITCH],
+        range->middle[NAV_LINKAGE_ROLL],
+    };
+    return footprint;
 }
 
 /** Interval, drop and unknown share of one wheel. */
@@ -371,24 +429,14 @@ static interval_t wheel_bounds(const view_t *view,
                                uint32_t wheel,
                                nav_ace_bounds_t *bounds)
 {
-    const growth_t growth = growth_wheel(view, range, wheel);
-    const nav_ground_point_t at =
-        from_body(view, range->middle, range->forward_m[wheel], range->right_m[wheel]);
-    const double pitch = fabs(range->middle[NAV_LINKAGE_PITCH]) + range->half[NAV_LINKAGE_PITCH];
-    const double roll = fabs(range->middle[NAV_LINKAGE_ROLL]) + range->half[NAV_LINKAGE_ROLL];
-    const nav_box_t box = {
-        at.u_m,
-        at.v_m,
-        view->params->wheel_radius_m + growth.u_m + (pitch * WHEEL_LEAN_M),
-        (0.5 * view->params->wheel_width_m) + growth.v_m + (roll * WHEEL_LEAN_M),
-    };
-    const span_t span = wheel_span(view, &box, &growth);
+    const footprint_t footprint = wheel_footprint(view, range, wheel);
+    const span_t span = wheel_span(view, &footprint);
     interval_t hub = {-NAV_ETA_NONE, NAV_ETA_NONE};
     double unknown = 1.0;
 
     if (span.eta_max_m >= span.eta_min_m)
     {
-        const nav_box_t places = wheel_places(view, &box, &growth, &span);
+        const nav_box_t places = wheel_places(view, &footprint, &span);
         const double height_m = span.eta_max_m - span.eta_min_m;
         const double margin_m = view->params->ace_margin * height_m;
         unknown = (double) span.unknown_count / (double) span.cell_count;
@@ -405,17 +453,17 @@ static interval_t wheel_bounds(const view_t *view,
 /** Solves the linkage for the middles and spans the intervals. @return false when unsolvable */
 static bool linkage_span(const view_t *view, const interval_t hubs[NAV_WHEELS], linkage_t *linkage)
 {
-    double middle_m[NAV_WHEELS];
     linkage->wheel_half_max_m = 0.0;
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
     {
-        middle_m[wheel] = 0.5 * (hubs[wheel].low_m + hubs[wheel].high_m);
+        linkage->wheel_middle_m[wheel] = 0.5 * (hubs[wheel].low_m + hubs[wheel].high_m);
         linkage->wheel_half_m[wheel] = 0.5 * (hubs[wheel].high_m - hubs[wheel].low_m);
         linkage->wheel_half_max_m =
             nav_max(linkage->wheel_half_max_m, linkage->wheel_half_m[wheel]);
     }
     const bool is_solved =
-        nav_vehicle_settle(view->vehicle, middle_m, linkage->state, linkage->inverse);
+        nav_vehicle_settle(
+        view->vehicle, linkage->wheel_middle_m, linkage->state, linkage->inverse);
     for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
     {
         linkage->half[k] = CURVATURE[k] * squared(linkage->wheel_half_max_m);
@@ -756,6 +804,10 @@ static void range_first(const view_t *view, range_t *range)
         range->middle[k] = 0.0;
         range->half[k] = FIRST_HALF[k];
     }
+    for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
+    {
+        range->height_m[wheel] = 0.0;
+    }
     nav_vehicle_wheel_places(view->vehicle, range->middle, range->forward_m, range->right_m);
 }
 
@@ -770,6 +822,10 @@ static void range_next(const view_t *view,
     {
         range->middle[k] = linkage->state[k];
         range->half[k] = (widening * linkage->half[k]) + SLACK[k];
+    }
+    for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
+    {
+        range->height_m[wheel] = linkage->wheel_middle_m[wheel];
     }
     nav_vehicle_wheel_places(view->vehicle, range->middle, range->forward_m, range->right_m);
 }

@@ -201,3 +201,48 @@ double nav_ground_eta_m(const nav_ground_t *ground, double foot_u_m, double foot
     }
     return eta_m;
 }
+
+/** Adds the crossings with the grid lines of one axis: rows (0) or columns (1). */
+static void add_crossings(const nav_ground_t *ground,
+                          const double at_m[2],
+                          double reach_m,
+                          uint32_t axis,
+                          nav_crossings_t *crossings)
+{
+    const double origin = (axis == 0U) ? ground->row : ground->col;
+    const double offset_m = (axis == 0U) ? ground->right_xy[0] : ground->right_xy[1];
+    const double per_u = ground->forward_xy[axis] * ground->cells_per_m;
+    const double middle =
+        origin + (offset_m * at_m[1] * ground->cells_per_m) + (per_u * at_m[0]);
+    const double half = fabs(per_u) * reach_m;
+
+    if (fabs(per_u) > 1.0e-6)
+    {
+        const nav_columns_t lines = whole_between(middle - half, middle + half);
+        for (int32_t line = lines.first;
+             (line <= lines.last) && (crossings->count < (uint32_t) NAV_CROSSINGS_MAX);
+             line++)
+        {
+            const double u_m = at_m[0] + (((double) line - middle) / per_u);
+            const double eta_m = nav_ground_eta_m(ground, u_m, at_m[1]);
+            if (eta_m > (-0.5 * NAV_ETA_NONE))
+            {
+                crossings->foot_u_m[crossings->count] = u_m;
+                crossings->eta_m[crossings->count] = eta_m;
+                crossings->count++;
+            }
+        }
+    }
+}
+
+void nav_ground_crossings(const nav_ground_t *ground,
+                          double foot_u_m,
+                          double foot_v_m,
+                          double reach_m,
+                          nav_crossings_t *crossings)
+{
+    const double at_m[2] = {foot_u_m, foot_v_m};
+    crossings->count = 0U;
+    add_crossings(ground, at_m, reach_m, 0U, crossings);
+    add_crossings(ground, at_m, reach_m, 1U, crossings);
+}

@@ -16,6 +16,9 @@
 /** Height of what is not known. */
 #define NAV_ETA_NONE 1.0e9
 
+/** Grid lines that a line of at most 2.6 m can cross, both ways, at the smallest cell size. */
+#define NAV_CROSSINGS_MAX 96
+
 /** The local ground plane along the heading, and where the pose is on the surface. */
 typedef struct
 {
@@ -84,5 +87,23 @@ bool nav_ground_cell(const nav_ground_t *ground, int32_t row, int32_t col, nav_g
 
 /** Height above the plane of the bilinear surface over a foot; -NAV_ETA_NONE where unknown. */
 double nav_ground_eta_m(const nav_ground_t *ground, double foot_u_m, double foot_v_m);
+
+/** Places of a line on the surface. */
+typedef struct
+{
+    uint32_t count;
+    double foot_u_m[NAV_CROSSINGS_MAX];
+    double eta_m[NAV_CROSSINGS_MAX];
+} nav_crossings_t;
+
+/**
+ * The known places, within reach_m of foot_u_m, where a line forward through a foot crosses the grid
+ * lines through cell centres: there the bilinear surface along the line has its corners.
+ */
+void nav_ground_crossings(const nav_ground_t *ground,
+                          double foot_u_m,
+                          double foot_v_m,
+                          double reach_m,
+                          nav_crossings_t *crossings);
 
 #endif

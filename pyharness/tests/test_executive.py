@@ -217,6 +217,15 @@ def test_arcs_that_stay_unsafe_are_a_fault(make_drive):
     assert "tilt" in outcome.fault_detail
 
 
+def test_after_an_unsafe_arc_the_selection_keeps_more_distance(make_drive):
+    drive = make_drive(replans_max=2)
+    drive.planner.is_safe = [False]
+    drive.run()
+    sizes_m = [float(request["uncertainty"]["position_m"]) for _, request in drive.calls("select")]
+    margin_m = drive.config.uncertainty.unsafe_margin_m
+    assert [size_m - sizes_m[0] for size_m in sizes_m] == pytest.approx([0, margin_m, 2 * margin_m])
+
+
 def test_without_a_path_it_looks_around_and_goes_on(make_drive):
     drive = make_drive()
     drive.planner.arcs = [(1.0, 0.0), None, None, (1.0, 0.0)]

@@ -43,7 +43,7 @@ def problems(tmp_path, text, overrides=None):
         ("zones: [{kind: keep_out, shape: circle}]", "a circle needs center_site_m, radius_m"),
         ("terrain: {file: a.pgm, cfa: 0.1}", "give a file or a recipe, not both"),
         ("goal: [1, 2]\nwaypoints: [{goal_site_m: [1, 2]}]", "give waypoints or a goal, not both"),
-        ("name: ../x", "name"),
+        ("name: ../x", "1:1: name: expected letters, digits"),
         ("[1, 2]", "1:1: expected keys and values at the top, got a list"),
     ],
 )

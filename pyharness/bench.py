@@ -1,0 +1,341 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How fast is it: `make bench` prints a table and writes build/bench.json.
+
+Every number stands beside one of a reference that does the same amount of the same kind of work,
+measured in the same run; the ratio is value / reference.
+"""
+
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pyharness import messages
+from pyharness.clib import ffi, lib
+from pyharness.drive import drive
+from pyharness.history import History
+from pyharness.messages import Arc, Pose6, Uncertainty
+from pyharness.navlib import Navlib
+from pyharness.planners.enav import Enav
+from pyharness.records import RecordStream, Waypoint
+from pyharness.scenario import (
+    Scenario,
+    drive_info,
+    load_scenario,
+    make_terrain,
+    navlib_params,
+)
+from sim.frames import rotation
+from sim.raycast import RayCaster
+from sim.settle import Settler
+from sim.terrain import Terrain
+from sim.vehicle import Vehicle
+from sim.world import World
+
+REPEATS = 7
+POINTS = 250_000
+GOAL = Waypoint(40.0, 0.0, 2.0, "avoid_all")
+CERTAIN = Uncertainty(0.03, 0.005, 0.1)
+OUTPUT = Path("build/bench.json")
+
+BINNING_C = """
+void bin(const float *points, int count, float *sum, int *hits)
+{
+    for (int i = 0; i < count; ++i)
+    {
+        const int row = (int) (points[3 * i] * 10.0F);
+        const int col = (int) (points[3 * i + 1] * 10.0F);
+        if ((row >= 0) && (row < 300) && (col >= 0) && (col < 300))
+        {
+            sum[300 * row + col] += points[3 * i + 2];
+            hits[300 * row + col] += 1;
+        }
+    }
+}
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """One measurement."""
+
+    name: str
+    value: float
+    unit: str
+    reference: str | None = None
+    reference_value: float | None = None
+    ratio: float | None = None
+
+
+def compared(
+    name: str, value: float, unit: str, reference: str, reference_value: float | None
+) -> Result:
+    """Return a measurement beside its reference, if that could be measured."""
+    if reference_value is None:
+        return Result(name, value, unit)
+    return Result(name, value, unit, reference, reference_value, value / reference_value)
+
+
+def best_of(function: Callable[[], object], repeats: int = REPEATS) -> float:
+    """Return the shortest of several durations: the one with the least disturbance."""
+    durations_s = []
+    for _ in range(repeats):
+        start_s = time.perf_counter()
+        function()
+        durations_s.append(time.perf_counter() - start_s)
+    return min(durations_s)
+
+
+@dataclass(frozen=True, slots=True)
+class Bench:
+    """The demonstration drive's scenario, terrain and rover."""
+
+    scenario: Scenario
+    terrain: Terrain
+    vehicle: Vehicle
+
+    def mapped(self) -> tuple[Navlib, Pose6]:
+        """Return Navlib with a map of the ground under and around the rover, and where that is."""
+        navlib = Navlib(navlib_params(self.scenario))
+        for image_id, north_m in enumerate((-44.0, -42.0, -40.0, -38.0, -36.0), start=1):
+            world = World(self.terrain, self.vehicle, start=(north_m, 0.0, 0.0))
+            pose = messages.copy_pose(world.truth)
+            for request in messages.cloud_requests(0.0, pose, image_id, world.image()):
+                navlib.process_disparity(request)
+        return navlib, pose
+
+
+def bench_process_disparity(bench: Bench) -> Result:
+    """Merge a cloud; the reference only bins it."""
+    rng = np.random.default_rng(1)
+    points_m = rng.uniform((-15, -15, -1), (15, 15, 1), (POINTS, 3)).astype(np.float32)
+    level = Pose6(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    requests = [
+        list(messages.cloud_requests(0.0, level, image_id, points_m))
+        for image_id in range(1, REPEATS + 1)
+    ]
+    navlib = Navlib(navlib_params(bench.scenario))
+    images = iter(requests)
+
+    def merge() -> None:
+        for request in next(images):
+            navlib.process_disparity(request)
+            lib.nav_stub_clear()
+
+    value_s = best_of(merge)
+    return compared(
+        "process_disparity", 1e3 * value_s, "ms", "plain C binning", _binning_ms(points_m + 15)
+    )
+
+
+def _binning_ms(points_m: npt.NDArray[np.float32]) -> float | None:
+    """Compile and time the loop that any such function must at least run."""
+    from cffi import FFI
+
+    with tempfile.TemporaryDirectory() as folder:
+        source, library = Path(folder, "bin.c"), Path(folder, "bin.so")
+        source.write_text(BINNING_C)
+        command = ["cc", "-O3", "-shared", "-fPIC", str(source), "-o", str(library)]
+        if subprocess.run(command, check=False).returncode != 0:
+            return None
+        plain: Any = FFI()
+        plain.cdef("void bin(const float *points, int count, float *sum, int *hits);")
+        function = plain.dlopen(str(library)).bin
+        total, hits = np.zeros(90_000, np.float32), np.zeros(90_000, np.int32)
+        arguments = (
+            plain.from_buffer("float[]", points_m),
+            len(points_m),
+            plain.from_buffer("float[]", total),
+            plain.from_buffer("int[]", hits),
+        )
+        return 1e3 * best_of(lambda: function(*arguments))
+
+
+def bench_analyze_terrain(bench: Bench) -> Result:
+    """Compute the costmap; the reference sums the boxes that plane fits need."""
+    from scipy.ndimage import uniform_filter
+
+    navlib, pose = bench.mapped()
+    request = messages.analyze_request(0.0, pose, GOAL, 0.1)
+
+    def analyze() -> None:
+        navlib.analyze_terrain(request)
+        lib.nav_stub_clear()
+
+    z_m = np.random.default_rng(1).normal(size=(300, 300))
+    axis_m = np.arange(300) * 0.1
+    moments = [z_m, z_m**2, z_m * axis_m, z_m * axis_m[:, None], np.ones_like(z_m)]
+
+    def boxes() -> None:
+        for moment in moments:
+            uniform_filter(moment, 25)[::5, ::5].copy()
+
+    value_ms, reference_ms = 1e3 * best_of(analyze), 1e3 * best_of(boxes)
+    return compared("analyze_terrain", value_ms, "ms", "scipy box sums", reference_ms)
+
+
+def bench_dijkstra(bench: Bench) -> Result:
+    """Compute the cost-to-go of every costmap cell."""
+    navlib, pose = bench.mapped()
+    navlib.analyze_terrain(messages.analyze_request(0.0, pose, GOAL, 0.1))
+    lib.nav_stub_clear()
+    ctx = navlib.context
+    goal = ffi.new(
+        "nav_waydisc_t *", {"x_site_m": -20.0, "y_site_m": 0.0, "radius_m": GOAL.radius_m}
+    )
+
+    def plan() -> None:
+        lib.nav_global_plan(
+            ffi.addressof(ctx, "global"),
+            ffi.addressof(ctx, "costmap"),
+            ffi.addressof(ctx, "params"),
+            goal,
+            True,
+            True,
+        )
+
+    return compared("dijkstra", 1e3 * best_of(plan), "ms", "skimage MCP_Geometric", _mcp_ms())
+
+
+def _mcp_ms() -> float | None:
+    try:
+        from skimage.graph import MCP_Geometric  # type: ignore[import-not-found,unused-ignore]
+    except ImportError:
+        return None
+    costs = np.random.default_rng(1).uniform(20.0, 60.0, (100, 100))
+    return 1e3 * best_of(lambda: MCP_Geometric(costs).find_costs([(50, 80)]))
+
+
+def bench_select_arc(bench: Bench) -> Result:
+    """Rank and test the tree."""
+    navlib, pose = bench.mapped()
+    navlib.analyze_terrain(messages.analyze_request(0.0, pose, GOAL, 0.1))
+    request = messages.select_request(0.0, pose, CERTAIN, GOAL, Arc(1.0, 0.0))
+
+    def select() -> None:
+        navlib.select_arc(request)
+        lib.nav_stub_clear()
+
+    return Result("select_arc", 1e3 * best_of(select), "ms")
+
+
+def bench_settle_warm(bench: Bench) -> Result:
+    """Settle the rover from a pose near by; the reference solves the linkage on given heights."""
+    settler = Settler(bench.terrain, bench.vehicle)
+    guess = settler.settle(0.0, 0.0, 0.0)
+
+    def settle() -> None:
+        for _ in range(1000):
+            settler.settle(0.01, 0.0, 0.0, guess)
+
+    return compared("settle_warm", 1e3 * best_of(settle), "us", "scipy root", _root_us(bench))
+
+
+def _root_us(bench: Bench) -> float:
+    """Time scipy on the same six equations, the wheels' heights known beforehand."""
+    from scipy.optimize import root
+
+    vehicle = ffi.new("nav_vehicle_t *")
+    params = np.array(list(navlib_params(bench.scenario).values()))
+    lib.nav_vehicle_init(ffi.from_buffer("nav_params_t *", params), vehicle)
+    found_m, jacobian = np.zeros(6), np.zeros((6, 6))
+    wanted_m = np.random.default_rng(1).uniform(-0.1, 0.1, 6)
+
+    def residuals(state: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        lib.nav_vehicle_wheel_heights(
+            vehicle,
+            ffi.from_buffer("double[]", np.ascontiguousarray(state)),
+            ffi.from_buffer("double[]", found_m),
+            ffi.from_buffer("double[6][6]", jacobian),
+        )
+        return found_m - wanted_m
+
+    def solve() -> None:
+        for _ in range(100):
+            root(residuals, np.zeros(6), jac=lambda _: jacobian.copy())
+
+    return 1e4 * best_of(solve)
+
+
+def bench_raycast(bench: Bench) -> Result:
+    """Cast the rays of one cloud; the reference marches them in numpy."""
+    caster = RayCaster(bench.terrain)
+    azimuth_rad, depression_rad = np.meshgrid(
+        np.linspace(-0.8, 0.8, 320), np.linspace(0.1, 0.9, 240)
+    )
+    directions = np.stack(
+        [
+            np.cos(depression_rad) * np.cos(azimuth_rad),
+            np.cos(depression_rad) * np.sin(azimuth_rad),
+            np.sin(depression_rad),
+        ],
+        axis=-1,
+    ).reshape(-1, 3)
+    z_m = float(bench.terrain.height_at(0.0, 0.0))
+    origin_m = np.array([0.0, 0.0, z_m - 2.0])
+    attitude = rotation(0.0, 0.0, 0.0)
+
+    def march() -> None:
+        alive, distance_m = directions, 0.3
+        while len(alive) and distance_m < 25.0:
+            points_m = origin_m + distance_m * alive
+            alive = alive[points_m[:, 2] < bench.terrain.height_at(points_m[:, 0], points_m[:, 1])]
+            distance_m += 0.1
+
+    def cast() -> None:
+        caster.ranges_m(origin_m, directions, 25.0, attitude)
+
+    return compared("raycast", 1e3 * best_of(cast), "ms", "numpy marcher", 1e3 * best_of(march, 2))
+
+
+def bench_drive_80m(bench: Bench) -> Iterator[Result]:
+    """Run the demonstration drive, records kept, nothing written."""
+    from pyharness.dp import native_schema
+
+    history = History(native_schema(), drive_info(bench.scenario))
+    start_s = time.process_time()
+    drive(bench.scenario, bench.terrain, Enav, RecordStream([history.take]))
+    value_s = time.process_time() - start_s
+    yield Result("drive_80m", value_s, "s")
+    yield Result("drive_80m_speed", float(history.truth["time_s"][-1]) / value_s, "rover s / s")
+
+
+def main() -> None:
+    """Measure everything, print a table, write the file."""
+    scenario = load_scenario(None, {})
+    vehicle = scenario.vehicle
+    assert isinstance(vehicle, Vehicle)
+    bench = Bench(scenario, make_terrain(scenario), vehicle)
+    results = [
+        bench_process_disparity(bench),
+        bench_analyze_terrain(bench),
+        bench_dijkstra(bench),
+        bench_select_arc(bench),
+        bench_settle_warm(bench),
+        bench_raycast(bench),
+        *bench_drive_80m(bench),
+    ]
+    OUTPUT.parent.mkdir(exist_ok=True)
+    rows = [asdict(result) for result in results]
+    OUTPUT.write_text(json.dumps(rows, indent=2, allow_nan=False) + "\n", "utf-8")
+    for result in results:
+        sys.stdout.write(_line(result))
+
+
+def _line(result: Result) -> str:
+    text = f"{result.name:<20} {result.value:10.3f} {result.unit:<12}"
+    if result.reference_value is None or result.ratio is None:
+        return text.rstrip() + "\n"
+    return f"{text} {result.reference_value:10.3f} {result.reference}, ratio {result.ratio:.3f}\n"
+
+
+if __name__ == "__main__":
+    main()
