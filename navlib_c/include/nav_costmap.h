@@ -71,7 +71,10 @@ void nav_costmap_init(nav_costmap_t *map, const nav_params_t *params);
  * not placed yet. Kept cells keep their content, new ones are unknown.
  * @return true when it was recentred
  */
-bool nav_costmap_recenter(nav_costmap_t *map, const nav_params_t *params, double x_site_m, double y_site_m);
+bool nav_costmap_recenter(nav_costmap_t *map,
+                          const nav_params_t *params,
+                          double x_site_m,
+                          double y_site_m);
 
 /**
  * Recomputes every cell that lies wholly on the surface, opens cells closed by ACE for longer than
@@ -96,7 +99,10 @@ nav_reason_t nav_costmap_reason(const nav_cost_cell_t *cell,
                                 bool use_zones);
 
 /** Feeds back the verdict of one ACE pose: a pass opens the cell, a failure counts. */
-void nav_costmap_feedback(nav_costmap_t *map, double x_site_m, double y_site_m, nav_reason_t reason);
+void nav_costmap_feedback(nav_costmap_t *map,
+                          double x_site_m,
+                          double y_site_m,
+                          nav_reason_t reason);
 
 /** Opens every cell closed by ACE. */
 void nav_costmap_clear_feedback(nav_costmap_t *map);

@@ -27,8 +27,8 @@
     X(11, EVALUATE_ARC_IN, nav_evaluate_arc_in_t, "an arc to check")                               \
     X(12, EVALUATE_ARC_OUT, nav_evaluate_arc_out_t, "whether it is safe, and its margins")         \
     X(13, EVR, nav_evr_t, "an event report")                                                       \
-    X(14, TREE, nav_tree_t, "cost and reason of every candidate path")                          \
-    X(15, SURFACE, nav_surface_t, "the heightmap as ACE reads it")                              \
+    X(14, TREE, nav_tree_t, "cost and reason of every candidate path")                             \
+    X(15, SURFACE, nav_surface_t, "the heightmap as ACE reads it")                                 \
     X(16, COSTMAP, nav_costmap_t, "the costmap")
 
 #define NAV_DP_ROW(value, name, type, doc) NAV_DP_##name = (value),
@@ -103,6 +103,9 @@ extern const nav_dp_def_t nav_dp_defs[NAV_DP_COUNT];
  *                    entries in use
  * @return NAV_OK, or NAV_SINK when it could not be taken; Navlib reports that and goes on
  */
-nav_status_t nav_dp_send(nav_dp_kind_t kind, double time_s, const void *record, uint32_t size_bytes);
+nav_status_t nav_dp_send(nav_dp_kind_t kind,
+                         double time_s,
+                         const void *record,
+                         uint32_t size_bytes);
 
 #endif

@@ -69,6 +69,7 @@ extern const nav_evr_def_t nav_evr_defs[NAV_EVR_COUNT];
 void nav_evr_send(const nav_evr_t *evr);
 
 /** Fills a report from the table and sends it; unused arguments are given as 0. */
-void nav_evr_report(double time_s, nav_evr_id_t id, double arg0, double arg1, double arg2, double arg3);
+void nav_evr_report(
+    double time_s, nav_evr_id_t id, double arg0, double arg1, double arg2, double arg3);
 
 #endif

@@ -20,7 +20,8 @@ typedef struct
     double cost_to_go_s[NAV_COSTMAP_CELLS]; /* NAV_COST_INFINITE where unreachable */
     double cost_s_per_m[NAV_COSTMAP_CELLS]; /* of the last plan; NAV_COST_INFINITE where blocked */
     uint32_t heap[NAV_COSTMAP_CELLS];       /* cells; a binary heap on cost_to_go_s */
-    uint32_t heap_place[NAV_COSTMAP_CELLS]; /* where a cell stands in the heap, 1-based; 0: not in it */
+    uint32_t
+        heap_place[NAV_COSTMAP_CELLS]; /* where a cell stands in the heap, 1-based; 0: not in it */
     uint32_t heap_count;
     uint32_t is_goal_inside; /* of the last plan */
 } nav_global_t;

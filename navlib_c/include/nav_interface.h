@@ -126,7 +126,9 @@ nav_status_t nav_analyze_terrain(nav_ctx_t *ctx,
  * @return NAV_OK, NAV_NO_PATH, NAV_NULL_POINTER, NAV_NOT_INITIALIZED, NAV_NOT_FINITE, NAV_OUT_OF_RANGE,
  *         NAV_ORDER
  */
-nav_status_t nav_select_arc(nav_ctx_t *ctx, const nav_select_arc_in_t *in, nav_select_arc_out_t *out);
+nav_status_t nav_select_arc(nav_ctx_t *ctx,
+                            const nav_select_arc_in_t *in,
+                            nav_select_arc_out_t *out);
 
 /**
  * Is one arc safe? Checks zones and terrain as the mode demands, at poses along the arc; the start,

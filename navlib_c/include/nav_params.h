@@ -50,7 +50,8 @@
       "ACE poses one call may evaluate [C]: 40 to 80 s of a RAD750")                               \
     X(negative_progress_max_m, 8.0, 0.0, 100.0, "m",                                               \
       "a path may end this much further from the goal than it starts [C]")                         \
-    X(uncertainty_growth, 0.03, 0.0, 1.0, "m/m", "growth of position uncertainty along a path [C]")\
+    X(uncertainty_growth, 0.03, 0.0, 1.0, "m/m",                                                   \
+      "growth of position uncertainty along a path [C]")                                           \
     X(uncertainty_position_max_m, 0.10, 0.0, 2.0, "m",                                             \
       "bound of that growth [C]: every metre is planned again with a fresh estimate")              \
     X(uncertainty_yaw_growth_rad_per_m, 0.0087266463, 0.0, 1.0, "rad/m",                           \
@@ -86,7 +87,8 @@
     X(belly_front_x_m, 0.90, -5.0, 5.0, "m", "front of the belly box [C]: outline not published")  \
     X(belly_rear_x_m, -1.18, -5.0, 5.0, "m", "rear of the belly box [C]: outline not published")   \
     X(belly_half_width_m, 0.775, 0.05, 3.0, "m", "half width of the belly box [C]")                \
-    X(belly_height_m, 0.60, 0.1, 3.0, "m", "belly pan above the flat ground [C]: from a landing "  \
+    X(belly_height_m, 0.60, 0.1, 3.0, "m",                                                         \
+      "belly pan above the flat ground [C]: from a landing "                                       \
       "rule of 60 cm")                                                                             \
     X(product_level, 0.0, 0.0, 2.0, "1",                                                           \
       "data products sent: 0 inputs and outputs, 1 also the tree, 2 also the grids [C]")

@@ -273,8 +273,7 @@ static void span_point(const view_t *view,
     const double along_m = nav_max(fabs(du_m) - footprint->growth.u_m, 0.0);
     if ((fabs(dv_m) <= footprint->growth.v_m) && (along_m <= view->params->wheel_radius_m))
     {
-        span->hub_high_m =
-            nav_max(span->hub_high_m, point->eta_m + wheel_reach_m(view, along_m));
+        span->hub_high_m = nav_max(span->hub_high_m, point->eta_m + wheel_reach_m(view, along_m));
     }
 }
 
@@ -338,14 +337,17 @@ static void line_interval(const double eta_m[SAMPLES_MAX],
 static double side_high_m(const view_t *view, const nav_box_t *places, double v_m)
 {
     const double reach_m = places->half_u_m + view->params->wheel_radius_m;
-    nav_crossings_t crossings;
     double high_m = -NAV_ETA_NONE;
-    nav_ground_crossings(&view->ground, places->u_m, v_m, reach_m, &crossings);
-    for (uint32_t k = 0U; k < crossings.count; k++)
+    for (uint32_t axis = NAV_GROUND_ROWS; axis <= NAV_GROUND_COLUMNS; axis++)
     {
-        const double along_m =
-            nav_max(fabs(crossings.foot_u_m[k] - places->u_m) - places->half_u_m, 0.0);
-        high_m = nav_max(high_m, crossings.eta_m[k] + wheel_reach_m(view, along_m));
+        nav_crossings_t crossings;
+        nav_ground_crossings(&view->ground, axis, places->u_m, v_m, reach_m, &crossings);
+        for (uint32_t k = 0U; k < crossings.count; k++)
+        {
+            const double along_m =
+                nav_max(fabs(crossings.foot_u_m[k] - places->u_m) - places->half_u_m, 0.0);
+            high_m = nav_max(high_m, crossings.eta_m[k] + wheel_reach_m(view, along_m));
+        }
     }
     return high_m;
 }
@@ -378,10 +380,8 @@ static interval_t wheel_interval(const view_t *view, const nav_box_t *places, do
         }
         line_interval(eta_m, reach_m, grow_count, disc_count, &hub);
     }
-    hub.high_m =
-        nav_max(hub.high_m, side_high_m(view, places, places->v_m - places->half_v_m));
-    hub.high_m =
-        nav_max(hub.high_m, side_high_m(view, places, places->v_m + places->half_v_m));
+    hub.high_m = nav_max(hub.high_m, side_high_m(view, places, places->v_m - places->half_v_m));
+    hub.high_m = nav_max(hub.high_m, side_high_m(view, places, places->v_m + places->half_v_m));
     hub.low_m -= radius_m;
     hub.high_m -= radius_m;
     return hub;
@@ -461,9 +461,8 @@ static bool linkage_span(const view_t *view, const interval_t hubs[NAV_WHEELS], 
         linkage->wheel_half_max_m =
             nav_max(linkage->wheel_half_max_m, linkage->wheel_half_m[wheel]);
     }
-    const bool is_solved =
-        nav_vehicle_settle(
-        view->vehicle, linkage->wheel_middle_m, linkage->state, linkage->inverse);
+    const bool is_solved = nav_vehicle_settle(view->vehicle, linkage->wheel_middle_m,
+                                              linkage->state, linkage->inverse);
     for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
     {
         linkage->half[k] = CURVATURE[k] * squared(linkage->wheel_half_max_m);

@@ -86,8 +86,8 @@ static nav_columns_t whole_between(double low, double high)
 nav_columns_t nav_ground_rows(const nav_ground_t *ground, const nav_box_t *box)
 {
     const double middle_m = (ground->forward_xy[0] * box->u_m) + (ground->right_xy[0] * box->v_m);
-    const double half_m = (fabs(ground->forward_xy[0]) * box->half_u_m) +
-                          (fabs(ground->right_xy[0]) * box->half_v_m);
+    const double half_m =
+        (fabs(ground->forward_xy[0]) * box->half_u_m) + (fabs(ground->right_xy[0]) * box->half_v_m);
     return whole_between(ground->row + ((middle_m - half_m) * ground->cells_per_m),
                          ground->row + ((middle_m + half_m) * ground->cells_per_m));
 }
@@ -120,15 +120,9 @@ nav_columns_t nav_ground_columns(const nav_ground_t *ground,
     const double dx_m = ((double) row - ground->row) * ground->surface->cell_m;
     double low_m = -COLUMN_REACH_M;
     double high_m = COLUMN_REACH_M;
-    cut_row(ground->u_of_xy[1],
-            box->u_m - (ground->u_of_xy[0] * dx_m),
-            box->half_u_m,
-            &low_m,
+    cut_row(ground->u_of_xy[1], box->u_m - (ground->u_of_xy[0] * dx_m), box->half_u_m, &low_m,
             &high_m);
-    cut_row(ground->v_of_xy[1],
-            box->v_m - (ground->v_of_xy[0] * dx_m),
-            box->half_v_m,
-            &low_m,
+    cut_row(ground->v_of_xy[1], box->v_m - (ground->v_of_xy[0] * dx_m), box->half_v_m, &low_m,
             &high_m);
 
     nav_columns_t columns = whole_between(ground->col + (low_m * ground->cells_per_m),
@@ -143,7 +137,10 @@ nav_columns_t nav_ground_columns(const nav_ground_t *ground,
     return columns;
 }
 
-bool nav_ground_cell(const nav_ground_t *ground, int32_t row, int32_t col, nav_ground_point_t *point)
+bool nav_ground_cell(const nav_ground_t *ground,
+                     int32_t row,
+                     int32_t col,
+                     nav_ground_point_t *point)
 {
     const float z = ground->surface->z_site_m[(row * NAV_HEIGHTMAP_SIZE) + col];
     const bool is_known = z < NAV_SURFACE_UNKNOWN_M;
@@ -195,36 +192,34 @@ double nav_ground_eta_m(const nav_ground_t *ground, double foot_u_m, double foot
     if ((row >= 0.0) && (col >= 0.0) && (row < last) && (col < last) &&
         surface_z_m(ground->surface, row, col, &z_m))
     {
-        const double plane_z_m =
-            ground->z_site_m + (ground->dz_dx * dx_m) + (ground->dz_dy * dy_m);
+        const double plane_z_m = ground->z_site_m + (ground->dz_dx * dx_m) + (ground->dz_dy * dy_m);
         eta_m = (plane_z_m - z_m) * ground->cos_slope;
     }
     return eta_m;
 }
 
-/** Adds the crossings with the grid lines of one axis: rows (0) or columns (1). */
-static void add_crossings(const nav_ground_t *ground,
-                          const double at_m[2],
-                          double reach_m,
+void nav_ground_crossings(const nav_ground_t *ground,
                           uint32_t axis,
+                          double foot_u_m,
+                          double foot_v_m,
+                          double reach_m,
                           nav_crossings_t *crossings)
 {
-    const double origin = (axis == 0U) ? ground->row : ground->col;
-    const double offset_m = (axis == 0U) ? ground->right_xy[0] : ground->right_xy[1];
+    const double origin = (axis == NAV_GROUND_ROWS) ? ground->row : ground->col;
     const double per_u = ground->forward_xy[axis] * ground->cells_per_m;
-    const double middle =
-        origin + (offset_m * at_m[1] * ground->cells_per_m) + (per_u * at_m[0]);
+    const double per_v = ground->right_xy[axis] * ground->cells_per_m;
+    const double middle = origin + (per_u * foot_u_m) + (per_v * foot_v_m);
     const double half = fabs(per_u) * reach_m;
 
+    crossings->count = 0U;
     if (fabs(per_u) > 1.0e-6)
     {
         const nav_columns_t lines = whole_between(middle - half, middle + half);
         for (int32_t line = lines.first;
-             (line <= lines.last) && (crossings->count < (uint32_t) NAV_CROSSINGS_MAX);
-             line++)
+             (line <= lines.last) && (crossings->count < (uint32_t) NAV_CROSSINGS_MAX); line++)
         {
-            const double u_m = at_m[0] + (((double) line - middle) / per_u);
-            const double eta_m = nav_ground_eta_m(ground, u_m, at_m[1]);
+            const double u_m = foot_u_m + (((double) line - middle) / per_u);
+            const double eta_m = nav_ground_eta_m(ground, u_m, foot_v_m);
             if (eta_m > (-0.5 * NAV_ETA_NONE))
             {
                 crossings->foot_u_m[crossings->count] = u_m;
@@ -233,16 +228,4 @@ static void add_crossings(const nav_ground_t *ground,
             }
         }
     }
-}
-
-void nav_ground_crossings(const nav_ground_t *ground,
-                          double foot_u_m,
-                          double foot_v_m,
-                          double reach_m,
-                          nav_crossings_t *crossings)
-{
-    const double at_m[2] = {foot_u_m, foot_v_m};
-    crossings->count = 0U;
-    add_crossings(ground, at_m, reach_m, 0U, crossings);
-    add_crossings(ground, at_m, reach_m, 1U, crossings);
 }

@@ -16,8 +16,12 @@
 /** Height of what is not known. */
 #define NAV_ETA_NONE 1.0e9
 
-/** Grid lines that a line of at most 2.6 m can cross, both ways, at the smallest cell size. */
-#define NAV_CROSSINGS_MAX 96
+/** Grid lines of one axis that a line of at most 2.6 m can cross, at the smallest cell size. */
+#define NAV_CROSSINGS_MAX 56
+
+/** The axes of the grid. */
+#define NAV_GROUND_ROWS 0U
+#define NAV_GROUND_COLUMNS 1U
 
 /** The local ground plane along the heading, and where the pose is on the surface. */
 typedef struct
@@ -29,13 +33,13 @@ typedef struct
     double right_xy[2];   /* SITE north, east per metre of v */
     double u_of_xy[2];    /* and back */
     double v_of_xy[2];
-    double forward_up;    /* up per metre of u */
-    double right_up;      /* up per metre of v */
+    double forward_up; /* up per metre of u */
+    double right_up;   /* up per metre of v */
     double cos_slope;
-    double z_site_m;      /* of the plane at the pose, down */
+    double z_site_m; /* of the plane at the pose, down */
     double dz_dx;
     double dz_dy;
-    double row;           /* of the pose, in cells, cell centres at whole numbers */
+    double row; /* of the pose, in cells, cell centres at whole numbers */
     double col;
     double cells_per_m;
 } nav_ground_t;
@@ -83,7 +87,10 @@ nav_columns_t nav_ground_columns(const nav_ground_t *ground,
                                  uint32_t *outside_count);
 
 /** A cell on the map, in the plane frame. @return false where it is unknown */
-bool nav_ground_cell(const nav_ground_t *ground, int32_t row, int32_t col, nav_ground_point_t *point);
+bool nav_ground_cell(const nav_ground_t *ground,
+                     int32_t row,
+                     int32_t col,
+                     nav_ground_point_t *point);
 
 /** Height above the plane of the bilinear surface over a foot; -NAV_ETA_NONE where unknown. */
 double nav_ground_eta_m(const nav_ground_t *ground, double foot_u_m, double foot_v_m);
@@ -97,10 +104,11 @@ typedef struct
 } nav_crossings_t;
 
 /**
- * The known places, within reach_m of foot_u_m, where a line forward through a foot crosses the grid
- * lines through cell centres: there the bilinear surface along the line has its corners.
+ * The known places, within reach_m of a foot, where a line forward through that foot crosses the grid
+ * lines of one axis through cell centres: there the bilinear surface along the line has its corners.
  */
 void nav_ground_crossings(const nav_ground_t *ground,
+                          uint32_t axis,
                           double foot_u_m,
                           double foot_v_m,
                           double reach_m,

@@ -140,18 +140,20 @@ TEST(Ace, a_middle_wheel_raised_to_the_bogie_limit_is_refused_for_the_bogie)
     EXPECT_EQ(NAV_REASON_BOGIE, reason(0.44));
 }
 
-TEST(Ace, raising_a_rock_never_makes_a_pose_safer)
+TEST(Ace, raising_a_rock_under_a_wheel_or_the_belly_never_makes_a_pose_safer)
 {
-    for (double y : {-1.06, -0.4, 0.3, 1.2})
+    const double places_m[4][2] = {{1.2, -1.06}, {0.5, -0.4}, {0.0, 1.2}, {-1.0, 1.0}};
+    for (const auto &place_m : places_m)
     {
         nav_ace_bounds_t before = on(flat);
         for (double height = 0.03; height < 0.5; height += 0.04)
         {
             const nav_ace_bounds_t after =
-                on([=](double x_m, double y_m)
-                   { return block(x_m, y_m, 0.5, y, 0.12, 0.12, height); });
+                on([&](double x_m, double y_m)
+                   { return block(x_m, y_m, place_m[0], place_m[1], 0.12, 0.12, height); });
             EXPECT_GE(after.wheel_drop_max_m, before.wheel_drop_max_m - 0.005);
-            if (std::fabs(y) < 0.6)
+            EXPECT_TRUE((before.reason == NAV_REASON_NONE) || (after.reason != NAV_REASON_NONE));
+            if (std::fabs(place_m[1]) < 0.6)
             {
                 EXPECT_LE(after.clearance_min_m, before.clearance_min_m + 1e-9);
             }

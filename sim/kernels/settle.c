@@ -774,8 +774,7 @@ static void ground_normal(const problem_t *problem, double *down)
         gradient[0] = (double) terrain->slope[2 * cell];
         gradient[1] = (double) terrain->slope[(2 * cell) + 1];
     }
-    const double norm =
-        sqrt(1.0 + (gradient[0] * gradient[0]) + (gradient[1] * gradient[1]));
+    const double norm = sqrt(1.0 + (gradient[0] * gradient[0]) + (gradient[1] * gradient[1]));
     down[0] = -gradient[0] / norm;
     down[1] = -gradient[1] / norm;
     down[2] = 1.0 / norm;
@@ -801,7 +800,7 @@ static double wheel_drop_m(const problem_t *problem, const iterate_t *iterate)
     const double half_width = 0.5 * problem->vehicle->wheel_width_m;
     double down[3];
     ground_normal(problem, down);
-    double largest = isnan(down[2]) ? NAN : 0.0;
+    double largest = 0.0 * down[2]; /* NaN without a slope */
     for (int wheel = 0; (wheel < SIM_WHEEL_COUNT) && !isnan(largest); wheel++)
     {
         const double *hub = iterate->linkage.hub_body_m[wheel];
