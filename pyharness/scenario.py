@@ -305,9 +305,7 @@ def _resolve_terrain(scenario: Scenario, folder: Path) -> TerrainSection:
     if terrain.start_m is None:
         update["start_m"] = scenario.start[:2]
         update["start_yaw_deg"] = scenario.start[2]
-    if terrain.base_file is not None:
-        update["base_file"] = str((folder / terrain.base_file).absolute())
-    return terrain.model_copy(update=update)
+    return terrain.with_files_in(folder).model_copy(update=update)
 
 
 def _resolve_planner(name: str, overrides: Mapping[str, object], folder: Path) -> str:

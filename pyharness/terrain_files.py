@@ -30,12 +30,18 @@ def generate_terrain(out: Path, recipe: Path | None, overrides: Mapping[str, obj
 
 
 def load_recipe(path: Path | None, overrides: Mapping[str, object]) -> TerrainRecipe:
-    """Read a recipe; the YAML file of a terrain holds one too."""
+    """Read a recipe; the YAML file of a terrain holds one too.
+
+    Files that a recipe names are looked for beside it, those of the overrides in this folder.
+    """
     if path is None:
-        return parse_model("", "recipe", TerrainRecipe, overrides)
+        return parse_model("", "recipe", TerrainRecipe, overrides).with_files_in(Path())
     if not path.with_suffix(".pgm").is_file():
-        return load_model(path, TerrainRecipe, overrides)
+        return load_model(path, TerrainRecipe, overrides).with_files_in(path.parent)
     recipe = load_model(path, SideCar).recipe
     if recipe is None:
         raise TerrainError(f"{path}: the terrain was not made from a recipe")
-    return parse_model(write_tree(recipe), f"{path} (recipe)", TerrainRecipe, overrides)
+    source = f"{path} (recipe)"
+    return parse_model(write_tree(recipe), source, TerrainRecipe, overrides).with_files_in(
+        path.parent
+    )

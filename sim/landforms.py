@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Made base terrains: crater, cliff, valley, maze, corridor, slope transition and rock pile."""
+"""Made base terrains: crater, cliff, valley, maze, corridor, slope transition and rock pile.
+
+Each is a building block: placed, turned and combined with the others as a recipe says.
+"""
 
 import math
 from typing import Annotated, Literal
@@ -13,11 +16,13 @@ from sim.config import ConfigModel
 LandformKind = Literal[
     "crater", "cliff", "valley", "maze", "corridor", "slope_transition", "rock_pile"
 ]
+# how a layer joins those before it: their sum, or the higher or lower of the two
+Combination = Literal["add", "higher", "lower"]
 Grid = npt.NDArray[np.float64]
 
 
 class Landform(ConfigModel):
-    """One landform in the middle of the terrain.
+    """One landform.
 
     Attributes:
         kind: crater: a bowl `height_m` deep and `width_m` across with a raised rim. cliff: a step
@@ -27,19 +32,30 @@ class Landform(ConfigModel):
             mound of boulders.
         height_m: Depth or height of the feature.
         width_m: Diameter, run of the slope, or free width between walls.
+        center_m: North and east of its middle.
+        azimuth_deg: Turned clockwise by this; what is said of north above is then this direction.
+        combine: How it joins the landforms before it.
     """
 
     kind: LandformKind
     height_m: Annotated[float, Field(gt=0, le=500)] = 1.0
     width_m: Annotated[float, Field(gt=0, le=500)] = 10.0
+    center_m: tuple[float, float] = (0.0, 0.0)
+    azimuth_deg: Annotated[float, Field(ge=-360, le=360)] = 0.0
+    combine: Combination = "add"
 
 
 def landform_up_m(form: Landform, north_m: Grid, east_m: Grid, rng: np.random.Generator) -> Grid:
     """Heights (up) on the grid of north_m [n] and east_m [m], shape [n, m]."""
-    n, e = north_m[:, None], east_m[None, :]
+    n, e = north_m[:, None] - form.center_m[0], east_m[None, :] - form.center_m[1]
+    extent_m = float(north_m[-1] - north_m[0]), float(east_m[-1] - east_m[0])
+    if form.azimuth_deg:
+        azimuth_rad = math.radians(form.azimuth_deg)
+        along, across = math.cos(azimuth_rad), math.sin(azimuth_rad)
+        n, e = along * n + across * e, along * e - across * n
     shape = np.zeros((len(north_m), len(east_m)))
     if form.kind == "maze":
-        relative = _maze(north_m, east_m, form.width_m, rng)
+        relative = _maze(n, e, extent_m, form.width_m, rng)
     elif form.kind == "rock_pile":
         relative = _rock_pile(n, e, form.width_m, rng)
     else:
@@ -97,10 +113,12 @@ def _ramp(x: Grid) -> Grid:
     return result
 
 
-def _maze(north_m: Grid, east_m: Grid, width_m: float, rng: np.random.Generator) -> Grid:
+def _maze(
+    n: Grid, e: Grid, extent_m: tuple[float, float], width_m: float, rng: np.random.Generator
+) -> Grid:
     """Walls of a perfect maze (depth-first), passages `width_m` wide, walls a tenth of it."""
-    rows = max(1, int((north_m[-1] - north_m[0]) // width_m))
-    cols = max(1, int((east_m[-1] - east_m[0]) // width_m))
+    rows = max(1, int(extent_m[0] // width_m))
+    cols = max(1, int(extent_m[1] // width_m))
     wall_north = np.ones((rows + 1, cols), dtype=bool)
     wall_east = np.ones((rows, cols + 1), dtype=bool)
     seen = np.zeros((rows, cols), dtype=bool)
@@ -123,30 +141,28 @@ def _maze(north_m: Grid, east_m: Grid, width_m: float, rng: np.random.Generator)
             wall_east[row, max(col, next_col)] = False
         seen[next_row, next_col] = True
         stack.append((next_row, next_col))
-    return _maze_walls(north_m, east_m, width_m, wall_north, wall_east)
+    return _maze_walls(n, e, width_m, wall_north, wall_east)
 
 
 def _maze_walls(
-    north_m: Grid,
-    east_m: Grid,
+    n: Grid,
+    e: Grid,
     width_m: float,
     wall_north: npt.NDArray[np.bool_],
     wall_east: npt.NDArray[np.bool_],
 ) -> Grid:
     rows, cols = wall_north.shape[0] - 1, wall_east.shape[1] - 1
-    u = north_m / width_m + 0.5 * rows
-    v = east_m / width_m + 0.5 * cols
+    u = n / width_m + 0.5 * rows
+    v = e / width_m + 0.5 * cols
     row, col = np.floor(u).astype(int), np.floor(v).astype(int)
-    inside = ((row >= 0) & (row < rows))[:, None] & ((col >= 0) & (col < cols))[None, :]
-    i, j = np.clip(row, 0, rows - 1)[:, None], np.clip(col, 0, cols - 1)[None, :]
+    inside = ((row >= 0) & (row < rows)) & ((col >= 0) & (col < cols))
+    i, j = np.clip(row, 0, rows - 1), np.clip(col, 0, cols - 1)
     half = 0.05
-    near_low, near_high = (u - row < half)[:, None], (u - row > 1 - half)[:, None]
-    near_left, near_right = (v - col < half)[None, :], (v - col > 1 - half)[None, :]
     wall = (
-        (near_low & wall_north[i, j])
-        | (near_high & wall_north[i + 1, j])
-        | (near_left & wall_east[i, j])
-        | (near_right & wall_east[i, j + 1])
+        ((u - row < half) & wall_north[i, j])
+        | ((u - row > 1 - half) & wall_north[i + 1, j])
+        | ((v - col < half) & wall_east[i, j])
+        | ((v - col > 1 - half) & wall_east[i, j + 1])
     )
     walls: Grid = (wall & inside).astype(np.float64)
     return walls

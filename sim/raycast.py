@@ -10,16 +10,14 @@ from sim.terrain import Terrain
 
 
 class RayCaster:
-    """Casts rays on one terrain; holds its pyramid of block maxima."""
+    """Casts rays on one terrain; holds its roof, which lets rays skip empty space."""
 
     def __init__(self, terrain: Terrain) -> None:
-        """Build the pyramid."""
+        """Build the roof: milliseconds for a million nodes."""
         self.terrain = terrain
         self._terrain_c = terrain_struct(terrain)
-        rows, cols = terrain.z_site_m.shape
-        size = lib.sim_pyramid_size(rows, cols, ffi.new("int32_t *"))
-        self._pyramid = np.empty(size, dtype=np.float32)
-        lib.sim_pyramid_build(self._terrain_c, pointer(self._pyramid, "float *"))
+        self._roof = np.empty(lib.sim_roof_size(*terrain.z_site_m.shape), dtype=np.float32)
+        lib.sim_roof_build(self._terrain_c, pointer(self._roof, "float *"))
 
     def ranges_m(
         self,
@@ -35,17 +33,26 @@ class RayCaster:
         """
         origin = np.ascontiguousarray(origin_site_m, dtype=np.float64).reshape(3)
         turn = np.ascontiguousarray(np.eye(3) if attitude is None else attitude, dtype=np.float64)
-        rays = np.ascontiguousarray(directions, dtype=np.float64).reshape(-1, 3)
-        ranges = np.full(len(rays), np.nan, dtype=np.float32)
-        if np.all(np.isfinite(origin)) and np.all(np.isfinite(turn)):
+        vectors = np.ascontiguousarray(directions, dtype=np.float64).reshape(-1, 3)
+        ranges = np.full(len(vectors), np.nan, dtype=np.float32)
+        if np.all(np.isfinite(origin)) and np.all(np.isfinite(turn)) and range_max_m > 0:
+            rays = ffi.new(
+                "sim_rays_t *",
+                {
+                    "origin_site_m": origin.tolist(),
+                    "attitude": turn.tolist(),
+                    "range_max_m": range_max_m,
+                    "directions": pointer(vectors, "const double *"),
+                    "count": len(vectors),
+                },
+            )
+            size = lib.sim_raycast_table_size(self._terrain_c, range_max_m)
+            table = np.empty(size, dtype=np.float32)
             lib.sim_raycast(
                 self._terrain_c,
-                pointer(self._pyramid, "const float *"),
-                pointer(origin, "const double *"),
-                pointer(turn, "const double *"),
-                pointer(rays, "const double *"),
-                len(rays),
-                range_max_m,
+                pointer(self._roof, "const float *"),
+                rays,
+                pointer(table, "float *"),
                 pointer(ranges, "float *"),
             )
         return ranges

@@ -2,7 +2,8 @@
 """Rocks by the Golombek-Rapp size-frequency law, each with an outline and a profile of its own.
 
 Law: rocks of at least diameter D cover F(D) = k exp(-q D) of the ground, q = 1.79 + 0.152 / k,
-where k is the cumulative fractional area (CFA) of all rocks.
+where k is the cumulative fractional area (CFA) of all rocks. The family is valid for k of 5 to
+40 %; smaller ones are extrapolated.
 """
 
 import math
@@ -11,9 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import exp1
 
+from sim.errors import TerrainError
 from sim.terrain import ROCK_DTYPE
 
+CFA_MAX = 0.4
+ROCKS_MAX = 5_000_000
 BINS_PER_DOUBLING = 12
 OUTLINE_WAVES = (2, 3, 4, 5)
 OUTLINE_AMPLITUDE_MAX = 0.16
@@ -33,6 +38,27 @@ def decay_per_m(cfa: float) -> float:
 def area_fraction(cfa: float, diameter_m: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """Share of the ground covered by rocks of at least this diameter."""
     return cfa * np.exp(-decay_per_m(cfa) * np.asarray(diameter_m, dtype=np.float64))
+
+
+def number_per_m2(cfa: float, diameter_m: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Rocks larger than this diameter on a square metre.
+
+    From dF = -(pi / 4) D^2 dN: N(>D) = (4 k q / pi) (exp(-q D) / D - q E1(q D)).
+    """
+    q, diameter = decay_per_m(cfa), np.asarray(diameter_m, dtype=np.float64)
+    tail: npt.NDArray[np.float64] = np.exp(-q * diameter) / diameter - q * exp1(q * diameter)
+    return 4.0 * cfa * q / math.pi * tail
+
+
+def achieved_area_fraction(
+    diameters_m: npt.NDArray[np.float64], area_m2: float, at_least_m: npt.ArrayLike
+) -> npt.NDArray[np.float64]:
+    """Share of an area that listed rocks of at least these diameters cover."""
+    ordered = np.sort(diameters_m)[::-1]
+    covered_m2 = np.concatenate([[0.0], np.cumsum(0.25 * math.pi * ordered**2)])
+    count = np.searchsorted(-ordered, -np.asarray(at_least_m, dtype=np.float64), side="right")
+    result: npt.NDArray[np.float64] = covered_m2[count] / area_m2
+    return result
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,7 +115,14 @@ def draw_rocks(
     area_m2 = -np.diff(area_fraction(cfa, edges)) * size_m[0] * size_m[1]
     # mean of D^2 over a bin that is uniform in log D
     mean_square = 0.5 * np.diff(edges**2) / np.diff(np.log(edges))
-    counts = rng.poisson(area_m2 / (0.25 * math.pi * mean_square))
+    expected = area_m2 / (0.25 * math.pi * mean_square)
+    if not expected.sum() <= ROCKS_MAX:
+        raise TerrainError(
+            f"rocks: about {expected.sum():.2g} of them at a CFA of {cfa:g} and diameters from"
+            f" {diameter_min_m:g} m, expected at most {ROCKS_MAX} (a larger rock_diameter_min_m,"
+            " or a smaller size_m)"
+        )
+    counts = rng.poisson(expected)
     count = int(counts.sum())
     low, high = np.repeat(edges[:-1], counts), np.repeat(edges[1:], counts)
     rocks = np.zeros(count, dtype=ROCK_DTYPE)
@@ -104,6 +137,29 @@ def draw_rocks(
         phase_rad=rng.uniform(0.0, 2.0 * math.pi, (count, waves)),
         steepness=rng.uniform(STEEPNESS_MIN, STEEPNESS_MAX, count),
     )
+
+
+def thinned(
+    field: RockField, cfa_drawn: float, cfa: npt.NDArray[np.float64], rng: np.random.Generator
+) -> RockField:
+    """Rocks as a varying CFA has them, from rocks drawn at the largest CFA.
+
+    The density of rocks of a diameter is proportional to k q exp(-q D), which grows with k at every
+    diameter: each rock stays with the ratio of the two densities.
+
+    Args:
+        field: Rocks drawn at `cfa_drawn`.
+        cfa_drawn: At least every value of `cfa`.
+        cfa: CFA [n] at each rock.
+        rng: Draws one number per rock.
+    """
+    diameter_m = field.rocks["diameter_m"]
+    chance = rng.random(len(diameter_m))
+    # k q = 1.79 k + 0.152; without rocks there is no q
+    k = np.maximum(cfa, 1e-9)
+    q_change = 0.152 / k - 0.152 / cfa_drawn
+    share = (1.79 * k + 0.152) / (1.79 * cfa_drawn + 0.152) * np.exp(-q_change * diameter_m)
+    return field.subset(chance < np.where(cfa > 0, share, 0.0))
 
 
 def outside_strip(

@@ -12,6 +12,8 @@ from sim.errors import TerrainError
 ROCK_DTYPE = np.dtype(
     [("north_m", "f8"), ("east_m", "f8"), ("diameter_m", "f8"), ("height_m", "f8")]
 )
+# numbers in a class map; 0 leaves the choice to the slip configuration
+CLASS_NAMES = ("unspecified", "bedrock", "cohesive_soil", "sand")
 
 
 def no_rocks() -> npt.NDArray[np.void]:
@@ -30,6 +32,7 @@ class Terrain:
         east_min_m: East of column 0.
         rocks: ROCK_DTYPE [n]; diameter of the circle of equal area, height above the ground.
         recipe: Plain data from which the terrain can be made again, or None.
+        classes: Terrain class of every node, indices of CLASS_NAMES; None is no map.
     """
 
     z_site_m: npt.NDArray[np.float32]
@@ -38,6 +41,7 @@ class Terrain:
     east_min_m: float
     rocks: npt.NDArray[np.void] = field(default_factory=no_rocks)
     recipe: dict[str, Any] | None = None
+    classes: npt.NDArray[np.uint8] | None = None
 
     def __post_init__(self) -> None:
         """Check and freeze the grid."""
@@ -52,6 +56,10 @@ class Terrain:
             z = z.copy() if z is self.z_site_m else z
             z.flags.writeable = False
         object.__setattr__(self, "z_site_m", z)
+        if self.classes is not None and self.classes.shape != z.shape:
+            raise TerrainError(
+                f"terrain: classes of shape {self.classes.shape}, expected {z.shape}"
+            )
 
     @property
     def north_max_m(self) -> float:
@@ -95,12 +103,29 @@ class Terrain:
         north = z[i + 1, j] * (1 - v) + z[i + 1, j + 1] * v
         return np.where(inside, south * (1 - u) + north * u, np.nan)
 
+    def class_at(self, north_m: npt.ArrayLike, east_m: npt.ArrayLike) -> npt.NDArray[np.uint8]:
+        """Class of the nearest node; 0 (unspecified) outside the grid or without a map."""
+        north, east = np.broadcast_arrays(
+            np.asarray(north_m, dtype=np.float64), np.asarray(east_m, dtype=np.float64)
+        )
+        result = np.zeros(north.shape, dtype=np.uint8)
+        if self.classes is None:
+            return result
+        row = (north - self.north_min_m) / self.resolution_m
+        col = (east - self.east_min_m) / self.resolution_m
+        rows, cols = self.classes.shape
+        inside = (row >= -0.5) & (row < rows - 0.5) & (col >= -0.5) & (col < cols - 0.5)
+        i, j = np.rint(row[inside]).astype(np.int64), np.rint(col[inside]).astype(np.int64)
+        result[inside] = self.classes[i, j]
+        return result
+
 
 def centred(
     z_site_m: npt.NDArray[np.float32],
     resolution_m: float,
     rocks: npt.NDArray[np.void] | None = None,
     recipe: dict[str, Any] | None = None,
+    classes: npt.NDArray[np.uint8] | None = None,
 ) -> Terrain:
     """Terrain whose middle is the SITE origin, as every stored terrain has it."""
     rows, cols = z_site_m.shape
@@ -111,4 +136,5 @@ def centred(
         east_min_m=-0.5 * (cols - 1) * resolution_m,
         rocks=no_rocks() if rocks is None else rocks,
         recipe=recipe,
+        classes=classes,
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Terrain files: 16-bit PGM with a side-car, rock list, and rasters through GDAL.
+"""Terrain files: 16-bit PGM with a side-car, rock list, class map; rasters through GDAL.
 
 This is the only place where elevation is up and row 0 is the northern one.
 """
@@ -9,7 +9,6 @@ import math
 import os
 import re
 import tempfile
-import warnings
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -17,12 +16,14 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import Field
 
-from sim.config import ConfigModel, dump_model, load_model, parse_model
+from sim.config import ConfigModel, load_model, parse_model
 from sim.errors import ConfigError, TerrainError
-from sim.terrain import ROCK_DTYPE, Terrain, centred, no_rocks
+from sim.raster import NODES_MAX, MapGrid, check_size, open_raster
+from sim.strict_yaml import write_tree
+from sim.terrain import CLASS_NAMES, ROCK_DTYPE, Terrain, centred, no_rocks
 
 COUNT_MAX = 65535
-NODES_MAX = 50_000_000
+CLASS_MAXVAL = 255
 HEADER_MAX_BYTES = 4096
 ELEVATION_MAX_M = 50_000.0
 ROCKS_HEADER = "north_m,east_m,diameter_m,height_m"
@@ -44,6 +45,8 @@ class SideCar(ConfigModel):
     formula: str | None = None
     note: str | None = None
     recipe: dict[str, Any] | None = None
+    class_names: tuple[str, ...] | None = None
+    origin: dict[str, Any] | None = None
 
 
 def read_terrain(path: Path | str) -> Terrain:
@@ -54,16 +57,27 @@ def read_terrain(path: Path | str) -> Terrain:
     Raises:
         TerrainError: One line with the file, what is wrong, and what was expected.
     """
-    path = Path(path)
-    if not path.exists():
-        raise TerrainError(f"{path}: no such file")
-    if not path.is_file():
-        raise TerrainError(f"{path}: not a file, expected a terrain")
+    path = _existing(path)
     return _read_pgm_terrain(path) if path.suffix.lower() == ".pgm" else _read_raster(path)
 
 
-def write_terrain(terrain: Terrain, path: Path | str) -> None:
-    """Write `T.pgm`, `T.yaml` (scale, offset, recipe) and `T.rocks.csv`, each atomically."""
+def _existing(path: Path | str) -> Path:
+    path = Path(path)
+    try:
+        if not path.exists():
+            raise TerrainError(f"{path}: no such file")
+        if not path.is_file():
+            raise TerrainError(f"{path}: not a file, expected a terrain")
+    except (OSError, ValueError) as error:  # too long a name, a NUL in it
+        raise TerrainError(f"{path!r}: cannot be read: {error}") from None
+    return path
+
+
+def write_terrain(terrain: Terrain, path: Path | str, origin: dict[str, Any] | None = None) -> None:
+    """Write `T.pgm`, `T.yaml` (scale, offset, recipe) and `T.rocks.csv`, each atomically.
+
+    Terrain classes go to `T.class.pgm`. `origin` says where on a planet the ground came from.
+    """
     path = Path(path)
     if path.suffix.lower() != ".pgm":
         raise TerrainError(f"{path}: expected a name ending in .pgm")
@@ -81,12 +95,19 @@ def write_terrain(terrain: Terrain, path: Path | str) -> None:
         cols=counts.shape[1],
         formula="z_up_m = z_offset_m + z_scale_m_per_count * value",
         recipe=terrain.recipe,
+        class_names=None if terrain.classes is None else CLASS_NAMES,
+        origin=origin,
     )
     header = f"P5\n{counts.shape[1]} {counts.shape[0]}\n{COUNT_MAX}\n".encode()
-    _write_atomic(path, header + counts.tobytes())
-    _write_atomic(rocks_path(path), _rocks_text(terrain.rocks).encode())
+    write_atomic(path, header + counts.tobytes())
+    write_atomic(rocks_path(path), _rocks_text(terrain.rocks).encode())
+    _write_classes(terrain.classes, classes_path(path))
     # last: a terrain is complete when its side-car is there
-    _write_atomic(path.with_suffix(".yaml"), dump_model(side_car).encode())
+    content = side_car.model_dump(mode="json")
+    for name in ("class_names", "origin"):
+        if content[name] is None:
+            del content[name]
+    write_atomic(path.with_suffix(".yaml"), write_tree(content).encode())
 
 
 def rocks_path(path: Path | str) -> Path:
@@ -94,11 +115,26 @@ def rocks_path(path: Path | str) -> Path:
     return Path(path).with_suffix(".rocks.csv")
 
 
+def classes_path(path: Path | str) -> Path:
+    """The terrain class map beside a terrain file."""
+    return Path(path).with_suffix(".class.pgm")
+
+
 # ------------------------------------------------------------------ PGM
 
 
 def _read_pgm_terrain(path: Path) -> Terrain:
     side_car = _read_side_car(path)
+    up_m = _values_of_pgm(path, side_car)
+    rocks = _read_rocks(rocks_path(path))
+    classes = _read_classes(classes_path(path), up_m.shape)
+    return centred(
+        (-up_m).astype(np.float32), side_car.cell_m, rocks, side_car.recipe, classes=classes
+    )
+
+
+def _values_of_pgm(path: Path, side_car: SideCar) -> npt.NDArray[np.float64]:
+    """Heights (up) of a PGM, row 0 south."""
     counts = _read_pgm(path)
     if counts.shape != (side_car.rows, side_car.cols):
         raise TerrainError(
@@ -110,8 +146,7 @@ def _read_pgm_terrain(path: Path) -> Terrain:
         raise TerrainError(
             f"{path}: heights beyond {ELEVATION_MAX_M:g} m, expected a smaller z_scale_m_per_count"
         )
-    rocks = _read_rocks(rocks_path(path))
-    return centred((-up_m).astype(np.float32), side_car.cell_m, rocks, side_car.recipe)
+    return up_m
 
 
 def _read_side_car(path: Path) -> SideCar:
@@ -134,26 +169,28 @@ def _read_side_car(path: Path) -> SideCar:
     )
 
 
-def _read_pgm(path: Path) -> npt.NDArray[np.uint16]:
-    """Counts [rows, cols], row 0 north, of a binary 16-bit PGM."""
+def _read_pgm(path: Path, maxval: int = COUNT_MAX) -> npt.NDArray[np.uint16]:
+    """Counts [rows, cols], row 0 north, of a binary PGM of 16 bits, or 8 for a maxval of 255."""
+    dtype = np.dtype(">u2" if maxval > CLASS_MAXVAL else "u1")
     try:
         with path.open("rb") as file:
-            cols, rows, start = _parse_header(path, file.read(HEADER_MAX_BYTES))
+            cols, rows, start = _parse_header(path, file.read(HEADER_MAX_BYTES), maxval)
             found = path.stat().st_size - start
-            if found != 2 * rows * cols:
-                kind = "short" if found < 2 * rows * cols else "long"
+            size = dtype.itemsize * rows * cols
+            if found != size:
+                kind = "short" if found < size else "long"
                 raise TerrainError(
-                    f"{path}: pixel data too {kind}: {found} bytes, expected {2 * rows * cols}"
-                    f" for {cols} x {rows} 16-bit pixels"
+                    f"{path}: pixel data too {kind}: {found} bytes, expected {size}"
+                    f" for {cols} x {rows} {8 * dtype.itemsize}-bit pixels"
                 )
             file.seek(start)
-            counts = np.frombuffer(file.read(2 * rows * cols), dtype=">u2")
+            counts = np.frombuffer(file.read(size), dtype=dtype)
             return counts.reshape(rows, cols).astype(np.uint16)
     except (OSError, ValueError) as error:
         raise TerrainError(f"{path}: cannot be read: {error}") from None
 
 
-def _parse_header(path: Path, head: bytes) -> tuple[int, int, int]:
+def _parse_header(path: Path, head: bytes, maxval_wanted: int) -> tuple[int, int, int]:
     """Columns, rows and the offset of the first pixel."""
     if head[:2] != b"P5" or head[2:3] not in (b" ", b"\t", b"\r", b"\n", b"#"):
         raise TerrainError(f"{path}: starts with {head[:2]!r}, expected a binary PGM (P5)")
@@ -171,8 +208,9 @@ def _parse_header(path: Path, head: bytes) -> tuple[int, int, int]:
     if head[position : position + 1] not in (b" ", b"\t", b"\r", b"\n"):
         raise TerrainError(f"{path}: expected one white space between maxval and the pixels")
     cols, rows, maxval = values
-    if maxval != COUNT_MAX:
-        raise TerrainError(f"{path}: maxval is {maxval}, expected {COUNT_MAX} (16-bit heights)")
+    if maxval != maxval_wanted:
+        what = "16-bit heights" if maxval_wanted == COUNT_MAX else "8-bit terrain classes"
+        raise TerrainError(f"{path}: maxval is {maxval}, expected {maxval_wanted} ({what})")
     if not (2 <= cols <= COUNT_MAX and 2 <= rows <= COUNT_MAX) or rows * cols > NODES_MAX:
         raise TerrainError(
             f"{path}: image of {cols} x {rows} pixels, expected 2 to {COUNT_MAX} each way and"
@@ -216,77 +254,66 @@ def _read_rocks(path: Path) -> npt.NDArray[np.void]:
     return np.array(rows, dtype=ROCK_DTYPE)
 
 
-# ------------------------------------------------------------------ rasters
+# ------------------------------------------------------------------ classes
+
+
+def _write_classes(classes: npt.NDArray[np.uint8] | None, path: Path) -> None:
+    if classes is None:
+        path.unlink(missing_ok=True)  # of a terrain that was here before
+        return
+    header = f"P5\n{classes.shape[1]} {classes.shape[0]}\n{CLASS_MAXVAL}\n".encode()
+    write_atomic(path, header + classes[::-1].tobytes())
+
+
+def _read_classes(path: Path, shape: tuple[int, ...]) -> npt.NDArray[np.uint8] | None:
+    if not path.exists():
+        return None
+    classes = _read_pgm(path, CLASS_MAXVAL)
+    if classes.shape != shape:
+        raise TerrainError(
+            f"{path}: {classes.shape[0]} rows x {classes.shape[1]} columns of classes, the terrain"
+            f" has {shape[0]} x {shape[1]}"
+        )
+    if int(classes.max()) >= len(CLASS_NAMES):
+        names = ", ".join(f"{number} {name}" for number, name in enumerate(CLASS_NAMES))
+        raise TerrainError(f"{path}: class {int(classes.max())}, expected {names}")
+    return classes[::-1].astype(np.uint8)
+
+
+# ------------------------------------------------------------------ maps
+
+
+def open_map(path: Path | str, band: int | None = None) -> MapGrid:
+    """Open a map of heights, or of anything else, for reading by windows.
+
+    A PGM is one too; it has no place on a planet.
+    """
+    path = _existing(path)
+    if path.suffix.lower() != ".pgm":
+        return open_raster(path, band)
+    if band is not None and band != 1:
+        raise TerrainError(f"{path}: no band {band}, a PGM has one")
+    side_car = _read_side_car(path)
+    values = _values_of_pgm(path, side_car)
+    return MapGrid(
+        path, (side_car.rows, side_car.cols), side_car.cell_m, None, lambda r, c: values[r, c]
+    )
 
 
 def _read_raster(path: Path) -> Terrain:
-    """A single-band elevation raster in metres, any format GDAL knows."""
-    try:
-        import rasterio
-        from rasterio.errors import NotGeoreferencedWarning, RasterioError
-    except ImportError:
-        raise TerrainError(
-            f"{path}: reading {path.suffix or 'this format'} needs rasterio,"
-            " install it with: pip install 'enav-sim[orbital]'"
-        ) from None
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", NotGeoreferencedWarning)
-            with rasterio.open(path) as dataset:
-                return _terrain_of_dataset(path, dataset)
-    except RasterioError as error:
-        reason = str(error).splitlines()[0]
-        raise TerrainError(f"{path}: not a raster that can be read: {reason}") from None
-
-
-def _terrain_of_dataset(path: Path, dataset: Any) -> Terrain:
-    cell_m = _cell_of_dataset(path, dataset)
-    raw = dataset.read(1, masked=True)
-    up_m = raw.astype(np.float64).filled(np.nan) * dataset.scales[0] + dataset.offsets[0]
-    # products without a no-data tag still mark holes with huge values
-    up_m[~(np.abs(up_m) <= ELEVATION_MAX_M)] = np.nan
+    """Whole raster as a terrain, its pixels as large as the file states."""
+    source = open_raster(path)
+    check_size(path, *source.shape)
+    up_m = source.read(slice(0, source.shape[0]), slice(0, source.shape[1]))
     if not np.any(np.isfinite(up_m)):
         raise TerrainError(f"{path}: every pixel is no-data, expected heights in metres")
-    if dataset.transform.e < 0:
-        up_m = up_m[::-1]
-    if dataset.transform.a < 0:
-        up_m = up_m[:, ::-1]
-    return centred((-up_m).astype(np.float32), cell_m)
-
-
-def _cell_of_dataset(path: Path, dataset: Any) -> float:
-    """Pixel size in metres of an upright, square, projected raster."""
-    transform = dataset.transform
-    if dataset.count != 1:
-        raise TerrainError(f"{path}: {dataset.count} bands, expected one of elevation")
-    if transform.is_identity and dataset.crs is None:
-        raise TerrainError(f"{path}: no georeference, expected a map in metres")
-    if dataset.crs is not None and dataset.crs.is_geographic:
-        raise TerrainError(
-            f"{path}: coordinates in degrees, expected metres (reproject it, e.g. with gdalwarp)"
-        )
-    if abs(transform.b) > 1e-9 or abs(transform.d) > 1e-9:
-        raise TerrainError(f"{path}: the map is rotated, expected north up")
-    unit_m = 1.0
-    if dataset.crs is not None and dataset.crs.is_projected:
-        unit_m = float(dataset.crs.linear_units_factor[1])
-    cell_x, cell_y = float(abs(transform.a) * unit_m), float(abs(transform.e) * unit_m)
-    if not math.isclose(cell_x, cell_y, rel_tol=1e-3):
-        raise TerrainError(
-            f"{path}: pixels of {cell_x:g} x {cell_y:g} m, expected square ones (resample it)"
-        )
-    if min(dataset.shape) < 2 or dataset.shape[0] * dataset.shape[1] > NODES_MAX:
-        raise TerrainError(
-            f"{path}: {dataset.shape[1]} x {dataset.shape[0]} pixels, expected at least 2 x 2 and"
-            f" at most {NODES_MAX} in all (cut a window out, e.g. with gdal_translate -projwin)"
-        )
-    return cell_x
+    return centred((-up_m).astype(np.float32), source.cell_m)
 
 
 # ------------------------------------------------------------------ writing
 
 
-def _write_atomic(path: Path, content: bytes) -> None:
+def write_atomic(path: Path, content: bytes) -> None:
     """Write through a temporary file beside the target: the target is old or new, never torn."""
     temporary: Path | None = None
     try:

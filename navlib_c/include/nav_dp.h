@@ -61,6 +61,7 @@ typedef enum
     X(nav_select_arc_out_t, NAV_SELECT_ARC_OUT_FIELDS)                                             \
     X(nav_evaluate_arc_in_t, NAV_EVALUATE_ARC_IN_FIELDS)                                           \
     X(nav_evaluate_arc_out_t, NAV_EVALUATE_ARC_OUT_FIELDS)                                         \
+    X(nav_path_t, NAV_PATH_FIELDS)                                                                 \
     X(nav_tree_t, NAV_TREE_FIELDS)                                                                 \
     X(nav_surface_t, NAV_SURFACE_FIELDS)                                                           \
     X(nav_costmap_t, NAV_COSTMAP_FIELDS)

@@ -16,7 +16,7 @@
 typedef struct
 {
     double z_sum_m;       /* of the points of the newest image */
-    float time_s;         /* of the newest image */
+    double time_s;        /* of the newest image */
     uint32_t image_id;    /* of the newest image */
     uint32_t point_count; /* 0: unknown; saturates, later points are left out */
 } nav_height_cell_t;

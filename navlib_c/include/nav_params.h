@@ -45,7 +45,12 @@
     X(pose_spacing_rad, 0.1570796327, 0.02, 1.0, "rad",                                            \
       "distance of ACE poses in a turn in place [C]: 9 deg move the front wheels 0.25 m")          \
     X(execute_length_m, 1.0, 0.1, 6.0, "m", "part of a path that is driven before replanning [E]") \
-    X(execute_turn_rad, 0.5235987756, 0.05, 3.2, "rad", "part of a turn that is driven [E]")       \
+    X(execute_turn_rad, 0.5235987756, 0.05, 3.2, "rad",                                            \
+      "part of a turn that is driven, in whole steps between the turns of the tree [E]: 30 deg "   \
+      "hold one of 25.7 deg")                                                                      \
+    X(keep_path_min_m, 3.5, 0.0, 12.0, "m",                                                        \
+      "length from which the rest of the selected path competes with new paths [C]: two more "     \
+      "metres of it, then new ones reach further")                                                 \
     X(ace_budget_poses, 4000.0, 1.0, 1.0e6, "1",                                                   \
       "ACE poses one call may evaluate [C]: 40 to 80 s of a RAD750")                               \
     X(negative_progress_max_m, 8.0, 0.0, 100.0, "m",                                               \

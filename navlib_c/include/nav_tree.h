@@ -12,16 +12,38 @@
 /** Verdict of a branch that has not been tested. */
 #define NAV_TREE_UNTESTED 255
 
-/** Candidate paths: path = (turn * NAV_TREE_ARCS + first) * NAV_TREE_ARCS + second. */
+/** Candidates: the paths of the tree, and what is left of the path selected before. */
+#define NAV_TREE_CANDIDATES (NAV_TREE_PATHS + 1)
+
+/** A path as three arcs, any of which may be empty, from an expected pose. */
+#define NAV_PATH_FIELDS(S, A, N, M)                                                                \
+    S(double, x_site_m, "m", "expected start")                                                     \
+    S(double, y_site_m, "m", "expected start")                                                     \
+    S(double, yaw_rad, "rad", "expected start")                                                    \
+    N(nav_arc_t, turn, "turn in place")                                                            \
+    N(nav_arc_t, first, "")                                                                        \
+    N(nav_arc_t, second, "")                                                                       \
+    S(uint32_t, is_kept, "1", "1 when there is such a path")                                       \
+    S(uint32_t, pad_0, "1", "zero")
+NAV_RECORD(NAV_PATH_FIELDS, nav_path_t);
+
+/**
+ * The tree's path = (turn * NAV_TREE_ARCS + first) * NAV_TREE_ARCS + second. The last candidate,
+ * NAV_TREE_PATHS, is the rest of the path selected before: driving 1 m of a path leads to a place
+ * from which the tree may not hold what follows. It competes by cost while keep_path_min_m of it are
+ * left, and is a last resort after that.
+ */
 #define NAV_TREE_FIELDS(S, A, N, M)                                                                \
-    A(double, path_cost_s, NAV_TREE_PATHS, "s", "1e12 when it crosses an infinite cell")           \
-    A(uint16_t, order, NAV_TREE_PATHS, "1", "paths by rising cost, then index")                    \
-    A(uint8_t, path_reason, NAV_TREE_PATHS, "1", "nav_reason_t")                                   \
+    A(double, path_cost_s, NAV_TREE_CANDIDATES, "s", "1e12 when it crosses an infinite cell")      \
+    N(nav_path_t, kept, "what is left of the selected path")                                       \
+    M(nav_ace_bounds_t, turn_bounds, NAV_TREE_TURNS, "worst bounds along a tested turn")           \
+    M(nav_ace_bounds_t, first_bounds, NAV_TREE_FIRST_ARCS, "worst bounds to the end of it")        \
+    A(uint16_t, order, NAV_TREE_CANDIDATES, "1", "paths by rising cost, then index; kept last")    \
+    A(uint8_t, path_reason, NAV_TREE_CANDIDATES, "1", "nav_reason_t")                              \
     A(uint8_t, turn_verdict, NAV_TREE_TURNS, "1", "nav_reason_t of a turn, 255 untested")          \
     A(uint8_t, first_verdict, NAV_TREE_FIRST_ARCS, "1", "of a first arc")                          \
     A(uint8_t, second_verdict, NAV_TREE_PATHS, "1", "of a second arc")                             \
-    M(nav_ace_bounds_t, turn_bounds, NAV_TREE_TURNS, "worst bounds along a tested turn")           \
-    M(nav_ace_bounds_t, first_bounds, NAV_TREE_FIRST_ARCS, "worst bounds to the end of it")
+    A(uint8_t, pad_0, 5, "1", "zero")
 NAV_RECORD(NAV_TREE_FIELDS, nav_tree_t);
 
 /** Poses of the NAV_TREE_ARCS arcs from a start at the origin heading north, spaced evenly. */
@@ -48,13 +70,13 @@ NAV_RECORD(NAV_SELECT_ARC_IN_FIELDS, nav_select_arc_in_t);
 
 #define NAV_SELECT_ARC_OUT_FIELDS(S, A, N, M)                                                      \
     S(uint32_t, status, "1", "nav_status_t: OK or NO_PATH")                                        \
-    S(uint32_t, path_index, "1", "the selected path of the tree")                                  \
+    S(uint32_t, path_index, "1", "selected candidate; 1694: the rest of the last one")             \
     N(nav_arc_t, arc, "what to drive next")                                                        \
     S(double, path_cost_s, "s", "of the selected path")                                            \
     S(double, cost_to_go_s, "s", "from its end to the goal, part of path_cost_s")                  \
     S(uint32_t, ace_evaluations, "1", "ACE poses evaluated in this call")                          \
     S(uint32_t, paths_tested, "1", "")                                                             \
-    A(uint32_t, rejections, NAV_REASON_COUNT, "1", "paths by nav_reason_t")                        \
+    A(uint32_t, rejections, NAV_REASON_COUNT, "1", "candidates by nav_reason_t")                   \
     N(nav_ace_bounds_t, bounds, "worst of each bound along the selected path")                     \
     S(uint32_t, path_point_count, "1", "")                                                         \
     S(uint32_t, global_point_count, "1", "")                                                       \

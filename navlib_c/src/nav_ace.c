@@ -261,10 +261,11 @@ static void span_point(const view_t *view,
     const nav_box_t *box = &footprint->box;
     const double du_m = point->u_m - box->u_m;
     const double dv_m = point->v_m - box->v_m;
-    /* the box stands upright on the body, the wheel's hub in its middle */
+    /* the box stands upright on the body; its place is the hub's fore and aft, the foot's sideways */
     const double above_m = point->eta_m - footprint->hub_m;
+    const double above_foot_m = above_m + view->params->wheel_radius_m;
     const double leaned_u_m = du_m + (footprint->pitch_rad * above_m);
-    const double leaned_v_m = dv_m - (footprint->roll_rad * above_m);
+    const double leaned_v_m = dv_m - (footprint->roll_rad * above_foot_m);
     if ((fabs(leaned_u_m) <= box->half_u_m) && (fabs(leaned_v_m) <= box->half_v_m))
     {
         span->eta_min_m = nav_min(span->eta_min_m, point->eta_m);
@@ -404,6 +405,10 @@ static nav_box_t wheel_places(const view_t *view, const footprint_t *footprint, 
 static footprint_t wheel_footprint(const view_t *view, const range_t *range, uint32_t wheel)
 {
     const growth_t growth = growth_wheel(view, range, wheel);
+    /* the box turns with the rover */
+    const double turn = view->uncertainty.yaw_rad +
+                        fabs(turn_of_pitch(view, range->middle[NAV_LINKAGE_PITCH])) +
+                        fabs(turn_of_pitch(view, range->half[NAV_LINKAGE_PITCH]));
     const nav_ground_point_t at =
         from_body(view, range->middle, range->forward_m[wheel], range->right_m[wheel]);
     const footprint_t footprint = {
@@ -411,9 +416,11 @@ static footprint_t wheel_footprint(const view_t *view, const range_t *range, uin
             at.u_m,
             at.v_m,
             view->params->wheel_radius_m + growth.u_m +
-                (range->half[NAV_LINKAGE_PITCH] * WHEEL_LEAN_M),
+                (range->half[NAV_LINKAGE_PITCH] * WHEEL_LEAN_M) +
+                (turn * 0.5 * view->params->wheel_width_m),
             (0.5 * view->params->wheel_width_m) + growth.v_m +
-                (range->half[NAV_LINKAGE_ROLL] * WHEEL_LEAN_M),
+                (range->half[NAV_LINKAGE_ROLL] * WHEEL_LEAN_M) +
+                (turn * view->params->wheel_radius_m),
         },
         growth,
         range->height_m[wheel] + view->params->wheel_radius_m,

@@ -128,6 +128,10 @@ static const nav_field_def_t fields_nav_evaluate_arc_out_t[] = {
     NAV_ROWS(NAV_EVALUATE_ARC_OUT_FIELDS)};
 #undef NAV_ROW_OF
 
+#define NAV_ROW_OF nav_path_t
+static const nav_field_def_t fields_nav_path_t[] = {NAV_ROWS(NAV_PATH_FIELDS)};
+#undef NAV_ROW_OF
+
 #define NAV_ROW_OF nav_tree_t
 static const nav_field_def_t fields_nav_tree_t[] = {NAV_ROWS(NAV_TREE_FIELDS)};
 #undef NAV_ROW_OF

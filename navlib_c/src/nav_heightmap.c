@@ -76,7 +76,7 @@ static int32_t storage_index(const nav_axis_t *axis, double scaled)
 }
 
 /* @return 1 when the point was taken, 0 when the cell is full */
-static uint32_t add_to_cell(nav_height_cell_t *cell, double z_m, float time_s, uint32_t image_id)
+static uint32_t add_to_cell(nav_height_cell_t *cell, double z_m, double time_s, uint32_t image_id)
 {
     uint32_t taken = 1U;
 
@@ -140,7 +140,7 @@ static float height_of_cell(const nav_height_cell_t *cell, double time_s, double
 {
     float z_m = NAV_SURFACE_UNKNOWN_M;
 
-    if ((cell->point_count > 0U) && ((time_s - (double) cell->time_s) <= expiry_s))
+    if ((cell->point_count > 0U) && ((time_s - cell->time_s) <= expiry_s))
     {
         const double mean_m = cell->z_sum_m / (double) cell->point_count;
 
@@ -277,7 +277,6 @@ nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
     const nav_axis_t rows = axis_from(map->origin_row);
     const nav_axis_t cols = axis_from(map->origin_col);
     const double cells_per_m = 1.0 / map->cell_m;
-    const float image_time_s = (float) time_s;
     nav_merge_t merge = {0U, 0U};
     nav_rotation_t rotation;
 
@@ -294,7 +293,7 @@ nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
             const int32_t index =
                 (storage_index(&rows, row) * NAV_SIZE) + storage_index(&cols, col);
 
-            merge.merged_count += add_to_cell(&map->cells[index], z_m, image_time_s, image_id);
+            merge.merged_count += add_to_cell(&map->cells[index], z_m, time_s, image_id);
         }
         else
         {

@@ -250,6 +250,17 @@ nav_status_t nav_set_kioz(nav_ctx_t *ctx, const nav_set_kioz_in_t *in, nav_set_k
     return status;
 }
 
+/** Why a point cannot be used. */
+static nav_status_t check_point(const nav_point_t *point)
+{
+    const nav_status_t checks[3] = {
+        check_range((double) point->x_m, -POINT_MAX_M, POINT_MAX_M),
+        check_range((double) point->y_m, -POINT_MAX_M, POINT_MAX_M),
+        check_range((double) point->z_m, -POINT_MAX_M, POINT_MAX_M),
+    };
+    return first_error(checks, 3U);
+}
+
 static nav_status_t check_points(const nav_process_disparity_in_t *in)
 {
     nav_status_t status = NAV_OK;
@@ -259,7 +270,7 @@ static nav_status_t check_points(const nav_process_disparity_in_t *in)
         const bool is_fine = is_within((double) point->x_m, POINT_MAX_M) &&
                              is_within((double) point->y_m, POINT_MAX_M) &&
                              is_within((double) point->z_m, POINT_MAX_M);
-        status = is_fine ? NAV_OK : NAV_NOT_FINITE;
+        status = is_fine ? NAV_OK : check_point(point);
     }
     return status;
 }

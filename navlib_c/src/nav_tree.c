@@ -13,6 +13,12 @@
 #define TURNS ((uint32_t) NAV_TREE_TURNS)
 #define ARCS ((uint32_t) NAV_TREE_ARCS)
 #define PATHS ((uint32_t) NAV_TREE_PATHS)
+#define KEPT PATHS /* index of the kept path among the candidates */
+
+/* The rest of a path is of use only where it was expected to begin. */
+#define KEPT_DISTANCE_MAX_M 0.5
+#define KEPT_YAW_MAX_RAD 0.2
+#define EMPTY_M 1.0e-6
 
 /** What one call works with. */
 typedef struct
@@ -26,6 +32,7 @@ typedef struct
     bool use_zone_cost;
     bool test_terrain;
     uint32_t ace_evaluations;
+    uint32_t candidate_count;
 } call_t;
 
 /** Where an arc of the tree ends, and what it cost. */
@@ -62,6 +69,13 @@ void nav_tree_init(const nav_params_t *params, nav_tree_shapes_t *shapes)
             shapes->right_m[k][place] = pose.y_m;
         }
     }
+}
+
+/** Unguarded and Guarded take the fastest path or none. */
+static bool is_one_path(const call_t *call)
+{
+    return (call->in->mode == (uint32_t) NAV_MODE_UNGUARDED) ||
+           (call->in->mode == (uint32_t) NAV_MODE_GUARDED);
 }
 
 static nav_arc_t turn_arc(uint32_t turn)
@@ -147,6 +161,29 @@ static branch_t branch_follow(const call_t *call, const nav_pose2_t *start, uint
     }
     branch.cost_s += nav_arc_duration_s(call->params, &arc) * (double) branch.pose_count /
                      (double) shapes->pose_count;
+    return branch;
+}
+
+/** Follows an arc of any length, as branch_follow does one of the tree; an empty arc costs nothing. */
+static branch_t arc_follow(const call_t *call, const nav_pose2_t *start, const nav_arc_t *arc)
+{
+    const uint32_t pose_count = nav_arc_pose_count(call->params, arc);
+    branch_t branch = {*start, 0.0, 0U, goal_distance_m(call, start) <= call->in->goal.radius_m,
+                       NAV_REASON_NONE};
+
+    for (uint32_t place = 0U;
+         (place < pose_count) && (arc->length_m > EMPTY_M) && !branch.is_at_goal; place++)
+    {
+        double cost_s_per_m = 0.0;
+        branch.end = nav_arc_pose(start, arc, (double) (place + 1U) / (double) pose_count);
+        const nav_reason_t reason = terrain_cost(call, &branch.end, &cost_s_per_m);
+        branch.reason = (branch.reason == NAV_REASON_NONE) ? reason : branch.reason;
+        branch.cost_s += cost_s_per_m * arc->length_m / (double) pose_count;
+        branch.is_at_goal = goal_distance_m(call, &branch.end) <= call->in->goal.radius_m;
+        branch.pose_count = place + 1U;
+    }
+    branch.cost_s +=
+        nav_arc_duration_s(call->params, arc) * (double) branch.pose_count / (double) pose_count;
     return branch;
 }
 
@@ -237,6 +274,42 @@ static void rank_seconds(
     }
 }
 
+/** Adds the rest of the path selected before to the candidates, if the rover is where it begins and
+ * the mode looks for more than one path. */
+static void rank_kept(call_t *call, nav_tree_t *tree)
+{
+    const nav_path_t *kept = &tree->kept;
+    const double dx_m = kept->x_site_m - call->start.x_m;
+    const double dy_m = kept->y_site_m - call->start.y_m;
+    const double turned_rad = nav_wrap_angle(kept->yaw_rad - call->start.yaw_rad);
+    const bool is_turn = fabs(kept->turn.heading_change_rad) > EMPTY_M;
+    call->candidate_count = PATHS;
+    if ((kept->is_kept != 0U) && !is_one_path(call) && (fabs(turned_rad) <= KEPT_YAW_MAX_RAD) &&
+        (((dx_m * dx_m) + (dy_m * dy_m)) <= (KEPT_DISTANCE_MAX_M * KEPT_DISTANCE_MAX_M)))
+    {
+        const nav_pose2_t turned = nav_arc_pose(&call->start, &kept->turn, 1.0);
+        const nav_steering_t in_place = nav_arc_steering(&kept->turn);
+        const nav_steering_t along_first = nav_arc_steering(&kept->first);
+        double cost_s = 0.0;
+        if (is_turn)
+        {
+            cost_s = steering_s(call, &call->in->steering, &kept->turn) +
+                     nav_arc_duration_s(call->params, &kept->turn);
+        }
+        cost_s += steering_s(call, is_turn ? &in_place : &call->in->steering, &kept->first);
+        const branch_t first = arc_follow(call, &turned, &kept->first);
+        branch_t leaf = first;
+        if ((first.reason == NAV_REASON_NONE) && !first.is_at_goal &&
+            (kept->second.length_m > EMPTY_M))
+        {
+            leaf = arc_follow(call, &first.end, &kept->second);
+            cost_s += first.cost_s + steering_s(call, &along_first, &kept->second);
+        }
+        path_rank(call, tree, KEPT, cost_s, &leaf);
+        call->candidate_count = (uint32_t) NAV_TREE_CANDIDATES;
+    }
+}
+
 /** Costs of all paths; nothing is tested. */
 static void rank(const call_t *call, nav_tree_t *tree)
 {
@@ -292,18 +365,27 @@ static void sift_down(nav_tree_t *tree, uint32_t root, uint32_t count)
     }
 }
 
-/** Heapsort of all paths by cost. */
-static void sort_paths(nav_tree_t *tree)
+/** Does the rest of the path selected before compete with the tree's paths? Shorter, it would win by
+ * seeing less of what lies ahead: then it comes last. */
+static bool is_kept_sorted(const call_t *call, const nav_tree_t *tree)
 {
-    for (uint32_t k = 0U; k < PATHS; k++)
+    return (call->candidate_count > PATHS) &&
+           ((tree->kept.first.length_m + tree->kept.second.length_m) >=
+            call->params->keep_path_min_m);
+}
+
+/** Heapsort of the first sorted_count candidates by cost; the others stay behind. */
+static void sort_paths(nav_tree_t *tree, uint32_t sorted_count)
+{
+    for (uint32_t k = 0U; k < (uint32_t) NAV_TREE_CANDIDATES; k++)
     {
         tree->order[k] = (uint16_t) k;
     }
-    for (uint32_t k = PATHS / 2U; k > 0U; k--)
+    for (uint32_t k = sorted_count / 2U; k > 0U; k--)
     {
-        sift_down(tree, k - 1U, PATHS);
+        sift_down(tree, k - 1U, sorted_count);
     }
-    for (uint32_t count = PATHS - 1U; count > 0U; count--)
+    for (uint32_t count = sorted_count - 1U; count > 0U; count--)
     {
         const uint16_t kept = tree->order[0];
         tree->order[0] = tree->order[count];
@@ -418,6 +500,50 @@ static test_t test_arc(call_t *call, const nav_pose2_t *start, uint32_t k, doubl
     return test;
 }
 
+/** Tests an arc of any length that begins distance_m along the path, up to the waydisc. */
+static test_t test_any_arc(call_t *call,
+                           const nav_pose2_t *start,
+                           const nav_arc_t *arc,
+                           double distance_m)
+{
+    const bool is_empty =
+        (fabs(arc->length_m) <= EMPTY_M) && (fabs(arc->heading_change_rad) <= EMPTY_M);
+    const uint32_t pose_count = is_empty ? 0U : nav_arc_pose_count(call->params, arc);
+    test_t test = {NAV_REASON_NONE, best_bounds()};
+    bool is_at_goal = false;
+    for (uint32_t place = 0U;
+         (place < pose_count) && (test.reason == NAV_REASON_NONE) && !is_at_goal; place++)
+    {
+        const double fraction = (double) (place + 1U) / (double) pose_count;
+        const nav_pose2_t pose = nav_arc_pose(start, arc, fraction);
+        test.reason = test_pose(call, &pose, distance_m + (fraction * arc->length_m), &test.bounds);
+        is_at_goal =
+            (arc->length_m > EMPTY_M) && (goal_distance_m(call, &pose) <= call->in->goal.radius_m);
+    }
+    return test;
+}
+
+/** Tests the rest of the path selected before. */
+static test_t test_kept(call_t *call, const nav_path_t *kept)
+{
+    const nav_pose2_t turned = nav_arc_pose(&call->start, &kept->turn, 1.0);
+    const branch_t first = arc_follow(call, &turned, &kept->first);
+    test_t test = test_any_arc(call, &call->start, &kept->turn, 0.0);
+    if (test.reason == NAV_REASON_NONE)
+    {
+        const test_t next = test_any_arc(call, &turned, &kept->first, 0.0);
+        test.reason = next.reason;
+        worsen(&test.bounds, &next.bounds);
+    }
+    if ((test.reason == NAV_REASON_NONE) && !first.is_at_goal)
+    {
+        const test_t next = test_any_arc(call, &first.end, &kept->second, kept->first.length_m);
+        test.reason = next.reason;
+        worsen(&test.bounds, &next.bounds);
+    }
+    return test;
+}
+
 /** Tests what of a path has not been tested before; bounds are the worst of the whole path. */
 static test_t test_path(call_t *call, nav_tree_t *tree, uint32_t path)
 {
@@ -476,21 +602,22 @@ static void clear_verdicts(nav_tree_t *tree)
     }
 }
 
-/** Tests paths from the cheapest. Paths not reached are rejected by cost or by the budget. */
+/** Tests the tree's paths from the cheapest, then, if none passed, the rest of the path selected
+ * before. Paths not reached are rejected by cost or by the budget. */
 static void test_paths(call_t *call, nav_tree_t *tree, nav_select_arc_out_t *out)
 {
-    const bool is_one_path = (call->in->mode == (uint32_t) NAV_MODE_UNGUARDED) ||
-                             (call->in->mode == (uint32_t) NAV_MODE_GUARDED);
     nav_reason_t rest = NAV_REASON_NONE;
 
-    for (uint32_t k = 0U; k < PATHS; k++)
+    for (uint32_t k = 0U; k < call->candidate_count; k++)
     {
         const uint32_t path = tree->order[k];
         if (tree->path_reason[path] == (uint8_t) NAV_REASON_NONE)
         {
-            if (rest == NAV_REASON_NONE)
+            /* the last resort is a few poses: the budget does not keep it from being tested */
+            if ((rest == NAV_REASON_NONE) || ((rest == NAV_REASON_BUDGET) && (path == KEPT)))
             {
-                const test_t test = test_path(call, tree, path);
+                const test_t test =
+                    (path == KEPT) ? test_kept(call, &tree->kept) : test_path(call, tree, path);
                 out->paths_tested++;
                 tree->path_reason[path] = (uint8_t) test.reason;
                 if (test.reason == NAV_REASON_NONE)
@@ -499,7 +626,7 @@ static void test_paths(call_t *call, nav_tree_t *tree, nav_select_arc_out_t *out
                     out->bounds = test.bounds;
                     rest = NAV_REASON_COST;
                 }
-                else if (is_one_path)
+                else if (is_one_path(call))
                 {
                     rest = NAV_REASON_COST;
                 }
@@ -532,62 +659,113 @@ static void add_point(nav_select_arc_out_t *out, const nav_pose2_t *pose)
     }
 }
 
-/** Adds the poses of an arc to the shown path. @return where it ends */
-static branch_t show_arc(const call_t *call,
-                         const nav_pose2_t *start,
-                         uint32_t k,
-                         nav_select_arc_out_t *out)
+/** How far a turn is driven before the next planning: whole steps between the turns of the tree, so
+ * that what remains is again a turn of the tree and the next plan can go on with it. */
+static double executed_turn_rad(const nav_params_t *params, double turn_rad)
 {
-    const double cos_sin[2] = {nav_cos(start->yaw_rad), nav_sin(start->yaw_rad)};
-    const branch_t branch = branch_follow(call, start, k);
-    for (uint32_t place = 0U; place < branch.pose_count; place++)
-    {
-        const nav_pose2_t pose = shape_pose(call->scene->shapes, start, k, place, cos_sin);
-        add_point(out, &pose);
-    }
-    return branch;
+    const double step_rad = (2.0 * NAV_PI) / (double) TURNS;
+    const double steps = nav_max(floor((params->execute_turn_rad / step_rad) + 1.0e-9), 1.0);
+    return nav_clamp(turn_rad, -steps * step_rad, steps * step_rad);
 }
 
-/** The part of the selected path that is driven: the first metre, or the first 30 deg of a turn. */
-static nav_arc_t executed_arc(const call_t *call, uint32_t path, const branch_t *first)
+/** The selected candidate as arcs from the start of the call. */
+static nav_path_t selected_path(const call_t *call, const nav_tree_t *tree, uint32_t path)
 {
-    const uint32_t node = path / ARCS;
-    const nav_arc_t turning = turn_arc(node / ARCS);
-    nav_arc_t arc = tree_arc(call, node % ARCS);
-    if (node >= ARCS)
+    nav_path_t selected = tree->kept;
+    if (path != KEPT)
     {
-        arc.length_m = 0.0;
-        arc.heading_change_rad =
-            nav_clamp(turning.heading_change_rad, -call->params->execute_turn_rad,
-                      call->params->execute_turn_rad);
+        const uint32_t node = path / ARCS;
+        selected.turn = turn_arc(node / ARCS);
+        selected.first = tree_arc(call, node % ARCS);
+        selected.second = tree_arc(call, path % ARCS);
+    }
+    return selected;
+}
+
+/** The given length from the front of an arc. */
+static nav_arc_t arc_front(const nav_arc_t *arc, double length_m)
+{
+    const nav_arc_t front = {length_m, arc->heading_change_rad * (length_m / arc->length_m)};
+    return front;
+}
+
+/** The part of a path that is driven: the first metre, up to the waydisc, or steps of a turn. */
+static nav_arc_t executed_arc(const call_t *call, const nav_path_t *path, const branch_t *first)
+{
+    nav_arc_t arc = {0.0, 0.0};
+    if (fabs(path->turn.heading_change_rad) > EMPTY_M)
+    {
+        arc.heading_change_rad = executed_turn_rad(call->params, path->turn.heading_change_rad);
     }
     else
     {
-        const double driven_m =
-            arc.length_m * (double) first->pose_count / (double) call->scene->shapes->pose_count;
-        const double length_m = nav_min(call->params->execute_length_m, driven_m);
-        arc.heading_change_rad *= length_m / arc.length_m;
-        arc.length_m = length_m;
+        const double driven_m = path->first.length_m * (double) first->pose_count /
+                                (double) nav_arc_pose_count(call->params, &path->first);
+        arc = arc_front(&path->first, nav_min(call->params->execute_length_m, driven_m));
     }
     return arc;
 }
 
-static void show_path(const call_t *call, const nav_tree_t *tree, nav_select_arc_out_t *out)
+/** What is left of a path when its first part has been driven; nothing when that was all. */
+static nav_path_t rest_of_path(const call_t *call, const nav_path_t *path, const nav_arc_t *driven)
 {
-    const uint32_t node = out->path_index / ARCS;
-    const nav_arc_t turning = turn_arc(node / ARCS);
-    const nav_pose2_t turned = nav_arc_pose(&call->start, &turning, 1.0);
+    const nav_pose2_t end = nav_arc_pose(&call->start, driven, 1.0);
+    nav_path_t rest = *path;
+    rest.x_site_m = end.x_m;
+    rest.y_site_m = end.y_m;
+    rest.yaw_rad = end.yaw_rad;
+    if (fabs(path->turn.heading_change_rad) > EMPTY_M)
+    {
+        rest.turn.heading_change_rad -= driven->heading_change_rad;
+    }
+    else if ((path->first.length_m - driven->length_m) > EMPTY_M)
+    {
+        rest.first.length_m -= driven->length_m;
+        rest.first.heading_change_rad -= driven->heading_change_rad;
+    }
+    else
+    {
+        rest.first = path->second;
+        rest.second.length_m = 0.0;
+        rest.second.heading_change_rad = 0.0;
+    }
+    rest.is_kept = (rest.first.length_m > EMPTY_M) ? 1U : 0U;
+    return rest;
+}
+
+/** Adds the poses of an arc to the shown path, up to the waydisc. */
+static void show_arc(const branch_t *branch,
+                     const nav_pose2_t *start,
+                     const nav_arc_t *arc,
+                     const call_t *call,
+                     nav_select_arc_out_t *out)
+{
+    const double pose_count = (double) nav_arc_pose_count(call->params, arc);
+    for (uint32_t place = 0U; place < branch->pose_count; place++)
+    {
+        const nav_pose2_t pose = nav_arc_pose(start, arc, (double) (place + 1U) / pose_count);
+        add_point(out, &pose);
+    }
+}
+
+/** Describes the selected path, and keeps what is left of it for the next call. */
+static void show_path(const call_t *call, nav_tree_t *tree, nav_select_arc_out_t *out)
+{
+    const nav_path_t path = selected_path(call, tree, out->path_index);
+    const nav_pose2_t turned = nav_arc_pose(&call->start, &path.turn, 1.0);
+    const branch_t first = arc_follow(call, &turned, &path.first);
+    branch_t leaf = first;
     double to_go_s = 0.0;
 
     add_point(out, &call->start);
-    const branch_t first = show_arc(call, &turned, node % ARCS, out);
-    branch_t leaf = first;
+    show_arc(&first, &turned, &path.first, call, out);
     if (!first.is_at_goal)
     {
-        leaf = show_arc(call, &first.end, out->path_index % ARCS, out);
+        leaf = arc_follow(call, &first.end, &path.second);
+        show_arc(&leaf, &first.end, &path.second, call, out);
     }
     (void) leaf_cost(call, &leaf, &to_go_s);
-    out->arc = executed_arc(call, out->path_index, &first);
+    out->arc = executed_arc(call, &path, &first);
     out->path_cost_s = tree->path_cost_s[out->path_index];
     out->cost_to_go_s = to_go_s;
     if (!leaf.is_at_goal && (call->use_terrain_cost || call->use_zone_cost))
@@ -596,6 +774,7 @@ static void show_path(const call_t *call, const nav_tree_t *tree, nav_select_arc
             nav_global_descend(call->scene->global, call->scene->costmap, leaf.end.x_m,
                                leaf.end.y_m, out->global_points, (uint32_t) NAV_GLOBAL_POINTS_MAX);
     }
+    tree->kept = rest_of_path(call, &path, &out->arc);
 }
 
 void nav_tree_select(nav_tree_t *tree,
@@ -612,16 +791,21 @@ void nav_tree_select(nav_tree_t *tree,
     call.use_zone_cost = call.use_terrain_cost || (in->mode == (uint32_t) NAV_MODE_AVOID_KOZ);
     call.test_terrain = call.use_terrain_cost || (in->mode == (uint32_t) NAV_MODE_GUARDED);
 
-    out->path_index = PATHS;
+    out->path_index = (uint32_t) NAV_TREE_CANDIDATES;
     clear_verdicts(tree);
     rank(&call, tree);
-    sort_paths(tree);
+    rank_kept(&call, tree);
+    sort_paths(tree, is_kept_sorted(&call, tree) ? call.candidate_count : PATHS);
     test_paths(&call, tree, out);
     out->ace_evaluations = call.ace_evaluations;
     out->status = (uint32_t) NAV_NO_PATH;
-    if (out->path_index < PATHS)
+    if (out->path_index < (uint32_t) NAV_TREE_CANDIDATES)
     {
         out->status = (uint32_t) NAV_OK;
         show_path(&call, tree, out);
+    }
+    else
+    {
+        tree->kept.is_kept = 0U;
     }
 }

@@ -48,7 +48,7 @@ class NavHeightmap : public ::testing::Test
 
     void set(int32_t row, int32_t col, double z_m, double time_s = 0.0)
     {
-        cell(row, col) = {z_m, static_cast<float>(time_s), 1U, 1U};
+        cell(row, col) = {z_m, time_s, 1U, 1U};
     }
 
     void make_surface(double time_s = 0.0)

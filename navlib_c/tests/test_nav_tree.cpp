@@ -87,14 +87,14 @@ TEST(Tree, a_rock_ahead_is_driven_round)
     EXPECT_GT(out->rejections[NAV_REASON_CLEARANCE] + out->rejections[NAV_REASON_WHEEL_DROP], 0U);
 }
 
-TEST(Tree, a_goal_behind_is_reached_by_turning_in_place_thirty_degrees_first)
+TEST(Tree, a_goal_behind_is_reached_by_turning_in_place_one_step_of_the_tree_first)
 {
     Scene scene;
     scene.goal = {-10.0, 0.3, 1.0};
     scene.show(flat);
     const auto out = scene.select(NAV_MODE_AVOID_ALL);
     EXPECT_DOUBLE_EQ(0.0, out->arc.length_m);
-    EXPECT_NEAR(30.0 * DEG, std::fabs(out->arc.heading_change_rad), 1e-9);
+    EXPECT_NEAR(360.0 / NAV_TREE_TURNS * DEG, std::fabs(out->arc.heading_change_rad), 1e-9);
 }
 
 TEST(Tree, a_path_ends_where_it_enters_the_waydisc)
@@ -128,7 +128,7 @@ TEST(Tree, an_enclosed_rover_has_no_path)
         });
     const auto out = scene.select(NAV_MODE_AVOID_ALL, NAV_NO_PATH);
     EXPECT_EQ(static_cast<uint32_t>(NAV_NO_PATH), out->status);
-    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_PATHS), out->path_index);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_CANDIDATES), out->path_index);
     EXPECT_EQ(0U, out->rejections[NAV_REASON_NONE]);
 }
 

@@ -57,7 +57,7 @@ def test_a_fault_is_3_and_the_folder_is_complete(enav, tmp_path):
         (["drive", "--mode", "fast"], "'fast' is not one of"),
         (["drive", "--planner", "nobody"], "planner nobody: expected"),
         (["drive", "--gaol", "1,2"], "--goal"),
-        (["terrain", "generate", "-o", "a.pgm", "--cfa", "7"], "--cfa: expected <= 0.5"),
+        (["terrain", "generate", "-o", "a.pgm", "--cfa", "7"], "--cfa: expected <= 0.4"),
         (["terrain", "generate", "-o", "a.pgm", "--base", "x.tif"], "x.tif: no such file"),
         (["terrain", "generate"], "Missing option '-o'"),
         (["drvie"], "drvie"),

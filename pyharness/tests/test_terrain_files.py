@@ -26,7 +26,7 @@ def test_a_recipe_file_may_be_overridden(tmp_path):
     ("name", "overrides", "message"),
     [
         ("a.png", {}, "expected a name ending in .pgm"),
-        ("a.pgm", {"cfa": 7.0}, "--set cfa: expected <= 0.5"),
+        ("a.pgm", {"cfa": 7.0}, "--set cfa: expected <= 0.4"),
         ("a.pgm", {"size": 7.0}, "did you mean 'size_m'"),
         ("a.pgm", {"base_file": "none.tif"}, "no such file"),
     ],

@@ -1,23 +1,45 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file raycast.c
- * @brief Rays over a bilinear heightfield, skipping empty space with a pyramid of block maxima.
+ * @brief Rays from one point over a bilinear heightfield, exact, with a skyline per direction.
+ *
+ * Seen from above, all rays of an image leave one point. The plane around it is cut into sectors,
+ * each sector into bins of distance. For every bin of a sector one number is kept: how steeply a ray
+ * must at least descend to touch the highest ground in it. A ray skips all bins that ask for more,
+ * and in the others it is intersected with the surface, cell by cell. Sectors are made when their
+ * first ray comes.
  */
 #include <math.h>
 #include <stddef.h>
 
 #include "sim_kernels.h"
 
-/* one pyramid level: block rows and columns, and where it starts */
+/* bins of the first ring, each one cell long; every further ring doubles distance and bin length */
+#define RING_BINS 128
+#define BINS_MAX (RING_BINS + ((RING_BINS / 2) * (SIM_ROOF_LEVELS_MAX - 1)))
+#define SECTORS (5 * RING_BINS)
+/* a group of bins is skipped as one */
+#define GROUP 8
+/* bins marched in one go: beyond the hit all are candidates */
+#define RUN_BINS_MAX 4
+/* least descents are rounded down by this, far more than a float's rounding */
+#define DESCENT_SLACK 1e-4F
+/* a ray this close to vertical stays in one cell */
+#define VERTICAL_SINE 1e-9
+/* cells meet within this distance: no ray slips through between them */
+#define EDGE_TOLERANCE 1e-9
+/* inverse of a speed that is none: further than any distance */
+#define STANDS_STILL 1e12
+
+/* one level of the roof: blocks of 2^level cells, one more all around the map */
 typedef struct
 {
     int32_t rows;
     int32_t cols;
-    int32_t shift;
     const float *top_z_m;
 } level_t;
 
-/* a ray in node coordinates: row(t) = row0 + t d_row, likewise col; z(t) in metres; t in metres */
+/* a ray over the plane: at distance r it is at (row0 + r d_row, col0 + r d_col) and z0 + r descent */
 typedef struct
 {
     double row0;
@@ -25,292 +47,500 @@ typedef struct
     double z0;
     double d_row;
     double d_col;
-    double d_z;
+    double descent;
     double inverse_row;
     double inverse_col;
 } ray_t;
 
-/* where the ray is: parameter t, and the cell it is about to cross */
+/* what the rays of one image share */
 typedef struct
 {
-    double t;
-    int32_t row;
-    int32_t col;
-} place_t;
+    const sim_terrain_t *terrain;
+    level_t level[SIM_ROOF_LEVELS_MAX];
+    double row0;
+    double col0;
+    double z0;
+    double cells_per_m;
+    int32_t bins;
+    double edge_m[BINS_MAX + 1];
+    float *table;
+} view_t;
 
-static int32_t block_count(int32_t cells, int32_t shift)
+/* ------------------------------------------------------------------ the roof */
+
+static int32_t block_count(int32_t cells, int32_t level)
 {
-    return ((cells - 1) >> shift) + 1;
+    return ((cells - 1) >> level) + 3;
 }
 
-int64_t sim_pyramid_size(int32_t rows, int32_t cols, int32_t *level_count)
+int64_t sim_roof_size(int32_t rows, int32_t cols)
 {
     int64_t size = 0;
-    int32_t level = 0;
-    int32_t block_rows = rows - 1;
-    int32_t block_cols = cols - 1;
-    do
+    for (int32_t level = 0; level < SIM_ROOF_LEVELS_MAX; level++)
     {
-        size += (int64_t) block_rows * block_cols;
-        level++;
-        block_rows = block_count(rows - 1, SIM_PYRAMID_SHIFT * level);
-        block_cols = block_count(cols - 1, SIM_PYRAMID_SHIFT * level);
-    } while ((level < SIM_PYRAMID_LEVELS_MAX) && ((block_rows > 2) || (block_cols > 2)));
-    *level_count = level;
+        size += (int64_t) block_count(rows - 1, level) * block_count(cols - 1, level);
+    }
     return size;
 }
 
-static float higher(float a, float b)
+static void set_levels(const sim_terrain_t *terrain, const float *roof, level_t *level)
+{
+    for (int32_t i = 0; i < SIM_ROOF_LEVELS_MAX; i++)
+    {
+        level[i].rows = block_count(terrain->rows - 1, i);
+        level[i].cols = block_count(terrain->cols - 1, i);
+        level[i].top_z_m = roof;
+        roof += (ptrdiff_t) level[i].rows * level[i].cols;
+    }
+}
+
+static inline float higher(float a, float b)
 {
     return (b < a) ? b : a;
 }
 
-/* level 0: the highest corner of each cell; NaN compares false, so it never wins */
-static void build_cells(const sim_terrain_t *terrain, float *top_z_m)
+/* level 0 before widening: the highest corner of each cell; NaN compares false and never wins */
+static void build_cells(const sim_terrain_t *terrain, const level_t *level, float *top_z_m)
 {
+    for (int32_t i = 0; i < level->rows * level->cols; i++)
+    {
+        top_z_m[i] = (float) INFINITY;
+    }
     for (int32_t row = 0; row < terrain->rows - 1; row++)
     {
         const float *south = &terrain->z_site_m[(ptrdiff_t) row * terrain->cols];
         const float *north = south + terrain->cols;
+        float *line = &top_z_m[((ptrdiff_t) (row + 1) * level->cols) + 1];
         for (int32_t col = 0; col < terrain->cols - 1; col++)
         {
             float top = (float) INFINITY;
             top = higher(top, south[col]);
             top = higher(top, south[col + 1]);
             top = higher(top, north[col]);
-            top = higher(top, north[col + 1]);
-            *top_z_m = top;
-            top_z_m++;
+            line[col] = higher(top, north[col + 1]);
         }
     }
 }
 
-static void build_level(const float *below, int32_t below_rows, int32_t below_cols, float *top_z_m)
+static void build_level(const level_t *below, const level_t *level, float *top_z_m)
 {
-    const int32_t rows = block_count(below_rows, SIM_PYRAMID_SHIFT);
-    const int32_t cols = block_count(below_cols, SIM_PYRAMID_SHIFT);
-    for (int32_t i = 0; i < rows * cols; i++)
+    for (int32_t i = 0; i < level->rows * level->cols; i++)
     {
         top_z_m[i] = (float) INFINITY;
     }
-    for (int32_t row = 0; row < below_rows; row++)
+    for (int32_t row = 1; row < below->rows - 1; row++)
     {
-        float *line = &top_z_m[(ptrdiff_t) (row >> SIM_PYRAMID_SHIFT) * cols];
-        for (int32_t col = 0; col < below_cols; col++)
+        const float *from = &below->top_z_m[(ptrdiff_t) row * below->cols];
+        float *line = &top_z_m[(ptrdiff_t) (((row - 1) >> 1) + 1) * level->cols];
+        for (int32_t col = 1; col < below->cols - 1; col++)
         {
-            const int32_t block = col >> SIM_PYRAMID_SHIFT;
-            line[block] = higher(line[block], below[((ptrdiff_t) row * below_cols) + col]);
+            float *block = &line[((col - 1) >> 1) + 1];
+            *block = higher(*block, from[col]);
         }
     }
 }
 
-static int32_t set_levels(const sim_terrain_t *terrain, const float *pyramid, level_t *levels)
+/* every block takes the highest ground of itself and its eight neighbours, in two passes */
+static void widen(const level_t *level, float *top_z_m)
 {
-    int32_t count;
-    (void) sim_pyramid_size(terrain->rows, terrain->cols, &count);
-    for (int32_t i = 0; i < count; i++)
+    const int32_t cols = level->cols;
+    for (int32_t row = 0; row < level->rows; row++)
     {
-        levels[i].shift = SIM_PYRAMID_SHIFT * i;
-        levels[i].rows = block_count(terrain->rows - 1, levels[i].shift);
-        levels[i].cols = block_count(terrain->cols - 1, levels[i].shift);
-        levels[i].top_z_m = pyramid;
-        pyramid += (ptrdiff_t) levels[i].rows * levels[i].cols;
+        float *line = &top_z_m[(ptrdiff_t) row * cols];
+        float before = (float) INFINITY;
+        for (int32_t col = 0; col < cols - 1; col++)
+        {
+            const float here = line[col];
+            line[col] = higher(higher(before, here), line[col + 1]);
+            before = here;
+        }
+        line[cols - 1] = higher(before, line[cols - 1]);
     }
-    return count;
+    for (int32_t col = 0; col < cols; col++)
+    {
+        float before = (float) INFINITY;
+        float *line = &top_z_m[col];
+        for (int32_t row = 0; row < level->rows - 1; row++)
+        {
+            const float here = line[0];
+            line[0] = higher(higher(before, here), line[cols]);
+            before = here;
+            line += cols;
+        }
+        line[0] = higher(before, line[0]);
+    }
 }
 
-void sim_pyramid_build(const sim_terrain_t *terrain, float *pyramid)
+void sim_roof_build(const sim_terrain_t *terrain, float *roof)
 {
-    level_t levels[SIM_PYRAMID_LEVELS_MAX];
-    const int32_t count = set_levels(terrain, pyramid, levels);
-    build_cells(terrain, pyramid);
-    for (int32_t i = 1; i < count; i++)
+    level_t level[SIM_ROOF_LEVELS_MAX];
+    set_levels(terrain, roof, level);
+    build_cells(terrain, &level[0], roof);
+    for (int32_t i = 1; i < SIM_ROOF_LEVELS_MAX; i++)
     {
-        const level_t *below = &levels[i - 1];
-        build_level(below->top_z_m, below->rows, below->cols,
-                    pyramid + (levels[i].top_z_m - pyramid));
+        build_level(&level[i - 1], &level[i], roof + (level[i].top_z_m - roof));
+    }
+    for (int32_t i = 0; i < SIM_ROOF_LEVELS_MAX; i++)
+    {
+        widen(&level[i], roof + (level[i].top_z_m - roof));
     }
 }
 
-/* narrows [t_in, t_out] to where start + t * rate lies in [0, limit]; 0 when empty */
-static int clip_axis(double start, double rate, double limit, double *t_in, double *t_out)
+/* ------------------------------------------------------------------ bins and sectors */
+
+/* near edge of a bin in cells; the ring is the bin's level of the roof */
+static inline int32_t bin_edge(int32_t bin, int32_t *ring)
 {
-    if (fabs(rate) < 1e-12)
+    if (bin < RING_BINS)
     {
-        return (start >= 0.0) && (start <= limit);
+        *ring = 0;
+        return bin;
     }
-    const double t_zero = -start / rate;
-    const double t_limit = (limit - start) / rate;
-    const double t_first = (t_zero < t_limit) ? t_zero : t_limit;
-    const double t_last = (t_zero < t_limit) ? t_limit : t_zero;
-    *t_in = (t_first > *t_in) ? t_first : *t_in;
-    *t_out = (t_last < *t_out) ? t_last : *t_out;
-    return *t_in <= *t_out;
+    const int32_t beyond = bin - RING_BINS;
+    const int32_t level = (beyond / (RING_BINS / 2)) + 1;
+    *ring = level;
+    return ((RING_BINS / 2) + (beyond % (RING_BINS / 2))) << level;
 }
 
-/* index of a place that is inside low..high but for rounding; low is never negative */
-static int32_t clamp_cell(double value, int32_t low, int32_t high)
+/* bins that reach as far as a ray can go, in whole groups */
+static int32_t bin_count(const sim_terrain_t *terrain, double range_max_m)
 {
-    const int32_t index = (int32_t) value;
-    return (index < low) ? low : ((index > high) ? high : index);
+    const double reach = range_max_m / terrain->resolution_m;
+    int32_t bins = 0;
+    int32_t ring = 0;
+    while ((bins < BINS_MAX) && ((double) bin_edge(bins, &ring) < reach))
+    {
+        bins += GROUP;
+    }
+    return bins;
 }
+
+/* per sector: a mark, the least descents of its bins, the least of each group */
+static ptrdiff_t sector_size(int32_t bins)
+{
+    return 1 + bins + (bins / GROUP);
+}
+
+int64_t sim_raycast_table_size(const sim_terrain_t *terrain, double range_max_m)
+{
+    return (int64_t) SECTORS * sector_size(bin_count(terrain, range_max_m));
+}
+
+/* sectors are equal in the angle of a diamond, which needs no arc tangent: 0 to 4 */
+static inline int32_t sector_of(double d_row, double d_col)
+{
+    const double part = d_col / (fabs(d_row) + fabs(d_col));
+    const double turn = (d_row < 0.0) ? 3.0 - part : 1.0 + part;
+    const int32_t sector = (int32_t) (turn * (0.25 * SECTORS));
+    return (sector < SECTORS) ? sector : SECTORS - 1;
+}
+
+static void sector_middle(int32_t sector, double *d_row, double *d_col)
+{
+    const double turn = (((double) sector + 0.5) / (0.25 * SECTORS)) - 1.0;
+    const double part = (turn > 1.0) ? 2.0 - turn : turn;
+    const double ahead = (turn > 1.0) ? fabs(part) - 1.0 : 1.0 - fabs(part);
+    const double norm = sqrt((part * part) + (ahead * ahead));
+    *d_row = ahead / norm;
+    *d_col = part / norm;
+}
+
+static float highest_near(const level_t *level, int32_t ring, double row, double col)
+{
+    float top = (float) INFINITY;
+    const double block_row = (row / (double) (1 << ring)) + 1.0;
+    const double block_col = (col / (double) (1 << ring)) + 1.0;
+    if ((block_row >= 0.0) && (block_col >= 0.0) && (block_row < (double) level->rows) &&
+        (block_col < (double) level->cols))
+    {
+        top = level->top_z_m[((ptrdiff_t) block_row * level->cols) + (ptrdiff_t) block_col];
+    }
+    return top;
+}
+
+/* the widened roof at the middle of a bin covers the whole bin, for it is at most one block away */
+static void build_sector(const view_t *view, int32_t sector, float *descent)
+{
+    double d_row;
+    double d_col;
+    sector_middle(sector, &d_row, &d_col);
+    float *group = &descent[view->bins];
+    for (int32_t bin = 0; bin < view->bins; bin++)
+    {
+        int32_t ring;
+        const double near = (double) bin_edge(bin, &ring);
+        const double far = near + (double) (1 << ring);
+        const double middle = 0.5 * (near + far);
+        const float top = highest_near(&view->level[ring], ring, view->row0 + (middle * d_row),
+                                       view->col0 + (middle * d_col));
+        const double depth = (double) top - view->z0;
+        /* the least descent that reaches this depth inside the bin; infinite without ground */
+        const double cells = (depth >= 0.0) ? far : near;
+        const float least = (float) (depth * view->cells_per_m / cells);
+        descent[bin] = isinf(least) ? least : least - (DESCENT_SLACK * (1.0F + fabsf(least)));
+        group[bin / GROUP] =
+            ((bin % GROUP) == 0) ? descent[bin] : higher(group[bin / GROUP], descent[bin]);
+    }
+}
+
+/* least descents of the sector of a ray */
+static inline const float *sector_for(const view_t *view, const ray_t *ray)
+{
+    const int32_t sector = sector_of(ray->d_row, ray->d_col);
+    float *table = &view->table[sector * sector_size(view->bins)];
+    if (!(table[0] > 0.0F))
+    {
+        build_sector(view, sector, &table[1]);
+        table[0] = 1.0F;
+    }
+    return &table[1];
+}
+
+/* first bin from `bin` on that the ray can touch, or the number of bins */
+static inline int32_t next_bin(const float *least, int32_t bins, int32_t bin, float descent)
+{
+    const float *group = &least[bins];
+    while ((bin < bins) && (descent < least[bin]))
+    {
+        bin++;
+        if ((bin % GROUP) == 0)
+        {
+            while ((bin < bins) && (descent < group[bin / GROUP]))
+            {
+                bin += GROUP;
+            }
+        }
+    }
+    return bin;
+}
+
+/* ------------------------------------------------------------------ cells */
 
 /*
- * First point in [t, t_out] where the ray meets the surface of one cell, or NaN. Along a straight
+ * First point in [r, r_out] where the ray meets the surface of one cell, or NaN. Along a straight
  * line the bilinear height is a quadratic: height above ground f(s) = f0 + b s + a s^2.
  */
-static double meet_cell(const sim_terrain_t *terrain,
-                        const ray_t *ray,
-                        const place_t *place,
-                        double t_out)
+static inline double meet_cell(
+    const float *south, const float *north, const ray_t *ray, double row, double col, double z)
 {
-    const float *south = &terrain->z_site_m[((ptrdiff_t) place->row * terrain->cols) + place->col];
-    const float *north = south + terrain->cols;
     const double z00 = (double) south[0];
     const double d_col = (double) south[1] - z00;
     const double d_row = (double) north[0] - z00;
     const double twist = ((double) north[1] - (double) north[0]) - d_col;
-    const double row = ray->row0 + (place->t * ray->d_row) - (double) place->row;
-    const double col = ray->col0 + (place->t * ray->d_col) - (double) place->col;
-    const double f0 =
-        z00 + (d_col * col) + (row * (d_row + (twist * col))) - (ray->z0 + (place->t * ray->d_z));
+    const double f0 = z00 + (d_col * col) + (row * (d_row + (twist * col))) - z;
     const double a = twist * ray->d_row * ray->d_col;
     const double b = (d_col * ray->d_col) + (d_row * ray->d_row) +
-                     (twist * ((row * ray->d_col) + (col * ray->d_row))) - ray->d_z;
-    const double span = t_out - place->t;
+                     (twist * ((row * ray->d_col) + (col * ray->d_row))) - ray->descent;
+    const double root_of = (b * b) - (4.0 * a * f0);
+    double s = NAN;
     if (f0 <= 0.0)
     {
-        return place->t;
+        s = 0.0;
     }
-    const double root_of = (b * b) - (4.0 * a * f0);
-    if (!(root_of >= 0.0) || ((b >= 0.0) && (a >= 0.0)))
+    else if ((root_of >= 0.0) && ((b < 0.0) || (a < 0.0)))
     {
-        return NAN;
+        /* smallest positive root, in the form that does not cancel */
+        const double root = sqrt(root_of);
+        s = (b < 0.0) ? (2.0 * f0) / (root - b) : (-b - root) / (2.0 * a);
     }
-    /* smallest positive root, in the form that does not cancel */
-    const double root = sqrt(root_of);
-    const double s = (b < 0.0) ? (2.0 * f0) / (root - b) : (-b - root) / (2.0 * a);
-    return (s <= span + 1e-9) ? place->t + s : (double) NAN;
+    return s;
 }
 
-/* parameter at which the ray leaves the block of cells that share all bits above the mask */
-static inline double exit_at(double start, double inverse, int32_t cell, int32_t mask)
+/* index of a place that is inside the map but for rounding */
+static inline int32_t cell_at(double value, int32_t count)
 {
-    const int32_t border = (inverse > 0.0) ? (cell | mask) + 1 : (cell & ~mask);
-    return ((double) border - start) * inverse;
+    const int32_t index = (int32_t) value;
+    return (index < 0) ? 0 : ((index > count - 2) ? count - 2 : index);
 }
 
-/* moves the place across the border of its block at this level */
-static inline void cross_block(
-    const ray_t *ray, int32_t mask, double t_row, double t_col, place_t *place)
+/* distance at which a ray crosses a border; along an axis on which it stands still, never */
+static inline double crossing(double start, double inverse, int32_t border)
 {
-    if (t_row < t_col)
-    {
-        const int32_t first = place->col & ~mask;
-        place->t = (t_row > place->t) ? t_row : place->t;
-        place->row = (ray->d_row > 0.0) ? (place->row | mask) + 1 : (place->row & ~mask) - 1;
-        place->col = clamp_cell(ray->col0 + (place->t * ray->d_col), first, first + mask);
-    }
-    else
-    {
-        const int32_t first = place->row & ~mask;
-        place->t = (t_col > place->t) ? t_col : place->t;
-        place->col = (ray->d_col > 0.0) ? (place->col | mask) + 1 : (place->col & ~mask) - 1;
-        place->row = clamp_cell(ray->row0 + (place->t * ray->d_row), first, first + mask);
-    }
+    return (inverse < STANDS_STILL) ? ((double) border - start) * inverse : inverse;
 }
 
-static int is_on_map(const sim_terrain_t *terrain, const place_t *place)
+/* first hit at distances [r, r_end], cell by cell, or NaN; both ends lie on the map */
+static double march(const sim_terrain_t *terrain, const ray_t *ray, double r, double r_end)
 {
-    return (place->row >= 0) && (place->row < terrain->rows - 1) && (place->col >= 0) &&
-           (place->col < terrain->cols - 1);
-}
-
-static double trace(const sim_terrain_t *terrain,
-                    const level_t *levels,
-                    int32_t level_count,
-                    const ray_t *ray,
-                    place_t place,
-                    double t_max)
-{
-    int32_t level = (level_count > 2) ? 2 : level_count - 1;
-    while ((place.t <= t_max) && is_on_map(terrain, &place))
+    int32_t row = cell_at(ray->row0 + (r * ray->d_row), terrain->rows);
+    int32_t col = cell_at(ray->col0 + (r * ray->d_col), terrain->cols);
+    const int32_t step_row = (ray->d_row < 0.0) ? -1 : 1;
+    const int32_t step_col = (ray->d_col < 0.0) ? -1 : 1;
+    const double width_row = fabs(ray->inverse_row);
+    const double width_col = fabs(ray->inverse_col);
+    double r_row = crossing(ray->row0, ray->inverse_row, row + (step_row > 0));
+    double r_col = crossing(ray->col0, ray->inverse_col, col + (step_col > 0));
+    while ((r <= r_end) && (row >= 0) && (row < terrain->rows - 1) && (col >= 0) &&
+           (col < terrain->cols - 1))
     {
-        const level_t *here = &levels[level];
-        const int32_t mask = (1 << here->shift) - 1;
-        const double t_row = exit_at(ray->row0, ray->inverse_row, place.row, mask);
-        const double t_col = exit_at(ray->col0, ray->inverse_col, place.col, mask);
-        const double t_near = (t_row < t_col) ? t_row : t_col;
-        const double t_out = (t_near < t_max) ? t_near : t_max;
-        const double t_low = (ray->d_z > 0.0) ? t_out : place.t;
-        const ptrdiff_t block =
-            ((ptrdiff_t) (place.row >> here->shift) * here->cols) + (place.col >> here->shift);
-        if (ray->z0 + (t_low * ray->d_z) >= (double) here->top_z_m[block])
+        const float *south = &terrain->z_site_m[((ptrdiff_t) row * terrain->cols) + col];
+        const float *north = south + terrain->cols;
+        const double r_out = (r_row < r_col) ? r_row : r_col;
+        const double z = ray->z0 + (r * ray->descent);
+        const double low = (ray->descent > 0.0) ? ray->z0 + (r_out * ray->descent) : z;
+        const float top = higher(higher(south[0], south[1]), higher(north[0], north[1]));
+        if (!(low < (double) top))
         {
-            if (level > 0)
+            const double s =
+                meet_cell(south, north, ray, ray->row0 + (r * ray->d_row) - (double) row,
+                          ray->col0 + (r * ray->d_col) - (double) col, z);
+            if (s <= (r_out - r) + EDGE_TOLERANCE)
             {
-                level--;
-                continue;
-            }
-            const double t_hit = meet_cell(terrain, ray, &place, t_out);
-            if (t_hit <= t_max)
-            {
-                return t_hit;
+                return r + s;
             }
         }
-        const int32_t row = place.row;
-        const int32_t col = place.col;
-        cross_block(ray, mask, t_row, t_col, &place);
-        /* out of the parent block too: look from one level further up */
-        const int32_t changed = (place.row ^ row) | (place.col ^ col);
-        const int is_new_parent = (changed & ~(((mask + 1) << SIM_PYRAMID_SHIFT) - 1)) != 0;
-        level += (is_new_parent && (level < level_count - 1)) ? 1 : 0;
+        if (r_row < r_col)
+        {
+            row += step_row;
+            r_row += width_row;
+        }
+        else
+        {
+            col += step_col;
+            r_col += width_col;
+        }
+        r = (r_out > r) ? r_out : r;
     }
     return NAN;
 }
 
+/* ------------------------------------------------------------------ rays */
+
+/* narrows [r_in, r_out] to where start + r * rate lies in [0, limit]; 0 when empty */
+static inline int clip_axis(double start, double inverse, double limit, double *r_in, double *r_out)
+{
+    if (!(inverse < STANDS_STILL))
+    {
+        return (start >= 0.0) && (start <= limit);
+    }
+    const double r_zero = -start * inverse;
+    const double r_limit = (limit - start) * inverse;
+    const double r_first = (r_zero < r_limit) ? r_zero : r_limit;
+    const double r_last = (r_zero < r_limit) ? r_limit : r_zero;
+    *r_in = (r_first > *r_in) ? r_first : *r_in;
+    *r_out = (r_last < *r_out) ? r_last : *r_out;
+    return *r_in <= *r_out;
+}
+
+static inline double inverse_of(double rate)
+{
+    return (fabs(rate) * STANDS_STILL > 1.0) ? 1.0 / rate : STANDS_STILL;
+}
+
+/* horizontal distance of the first hit within r_max, or NaN */
+static double trace(const view_t *view, const ray_t *ray, double r_max)
+{
+    const sim_terrain_t *terrain = view->terrain;
+    double r_in = 0.0;
+    double r_out = r_max;
+    if (!clip_axis(ray->row0, ray->inverse_row, (double) (terrain->rows - 1), &r_in, &r_out) ||
+        !clip_axis(ray->col0, ray->inverse_col, (double) (terrain->cols - 1), &r_in, &r_out))
+    {
+        return NAN;
+    }
+    const float *least = sector_for(view, ray);
+    const float descent = (float) ray->descent;
+    double r_hit = NAN;
+    double r_near = r_in;
+    int32_t bin = 0;
+    while (isnan(r_hit) && (r_near <= r_out) && (bin <= view->bins))
+    {
+        bin = next_bin(least, view->bins, bin, descent);
+        const double r_bin = view->edge_m[bin];
+        r_near = (r_bin > r_in) ? r_bin : r_in;
+        const int32_t last = bin + RUN_BINS_MAX;
+        do
+        {
+            bin++;
+        } while ((bin < view->bins) && (bin < last) && !(descent < least[bin]));
+        /* beyond the last bin every cell is looked at */
+        const double r_end = (bin <= view->bins) ? view->edge_m[bin] : r_out;
+        if (r_near <= r_out)
+        {
+            r_hit = march(terrain, ray, r_near, (r_end < r_out) ? r_end : r_out);
+        }
+    }
+    return (r_hit <= r_out + EDGE_TOLERANCE) ? r_hit : (double) NAN;
+}
+
+/* straight up or down: the ground at the origin */
+static double plumb(const view_t *view, double down)
+{
+    const sim_terrain_t *terrain = view->terrain;
+    double range_m = NAN;
+    if ((view->row0 >= 0.0) && (view->col0 >= 0.0) &&
+        (view->row0 <= (double) (terrain->rows - 1)) &&
+        (view->col0 <= (double) (terrain->cols - 1)))
+    {
+        const int32_t row = cell_at(view->row0, terrain->rows);
+        const int32_t col = cell_at(view->col0, terrain->cols);
+        const float *south = &terrain->z_site_m[((ptrdiff_t) row * terrain->cols) + col];
+        const float *north = south + terrain->cols;
+        const double fr = view->row0 - (double) row;
+        const double fc = view->col0 - (double) col;
+        const double z_south = (double) south[0] + (fc * ((double) south[1] - (double) south[0]));
+        const double z_north = (double) north[0] + (fc * ((double) north[1] - (double) north[0]));
+        const double depth_m = z_south + (fr * (z_north - z_south)) - view->z0;
+        range_m = (depth_m <= 0.0) ? 0.0 : ((down > 0.0) ? depth_m / down : (double) NAN);
+    }
+    return range_m;
+}
+
+static double cast(const view_t *view, const double *direction, double range_max_m)
+{
+    const double sine = sqrt((direction[0] * direction[0]) + (direction[1] * direction[1]));
+    double range_m;
+    if (sine > VERTICAL_SINE)
+    {
+        const double inverse = 1.0 / sine;
+        ray_t ray = {.row0 = view->row0, .col0 = view->col0, .z0 = view->z0};
+        ray.d_row = direction[0] * inverse * view->cells_per_m;
+        ray.d_col = direction[1] * inverse * view->cells_per_m;
+        ray.descent = direction[2] * inverse;
+        ray.inverse_row = inverse_of(ray.d_row);
+        ray.inverse_col = inverse_of(ray.d_col);
+        range_m = trace(view, &ray, range_max_m * sine) * inverse;
+    }
+    else
+    {
+        range_m = plumb(view, direction[2]);
+    }
+    return (range_m <= range_max_m) ? range_m : (double) NAN;
+}
+
 void sim_raycast(const sim_terrain_t *terrain,
-                 const float *pyramid,
-                 const double *origin_site_m,
-                 const double *attitude,
-                 const double *directions,
-                 int32_t count,
-                 double range_max_m,
+                 const float *roof,
+                 const sim_rays_t *rays,
+                 float *table,
                  float *range_m)
 {
-    level_t levels[SIM_PYRAMID_LEVELS_MAX];
-    const int32_t level_count = set_levels(terrain, pyramid, levels);
-    const double scale = 1.0 / terrain->resolution_m;
-    ray_t ray;
-    ray.row0 = (origin_site_m[0] - terrain->north_min_m) * scale;
-    ray.col0 = (origin_site_m[1] - terrain->east_min_m) * scale;
-    ray.z0 = origin_site_m[2];
-    for (int32_t i = 0; i < count; i++)
+    view_t view;
+    view.terrain = terrain;
+    set_levels(terrain, roof, view.level);
+    view.cells_per_m = 1.0 / terrain->resolution_m;
+    view.row0 = (rays->origin_site_m[0] - terrain->north_min_m) * view.cells_per_m;
+    view.col0 = (rays->origin_site_m[1] - terrain->east_min_m) * view.cells_per_m;
+    view.z0 = rays->origin_site_m[2];
+    view.bins = bin_count(terrain, rays->range_max_m);
+    view.table = table;
+    for (int32_t bin = 0; bin <= view.bins; bin++)
     {
-        const double *body = &directions[(ptrdiff_t) 3 * i];
+        int32_t ring;
+        view.edge_m[bin] = (double) bin_edge(bin, &ring) * terrain->resolution_m;
+    }
+    for (int32_t sector = 0; sector < SECTORS; sector++)
+    {
+        table[sector * sector_size(view.bins)] = 0.0F;
+    }
+    for (int32_t i = 0; i < rays->count; i++)
+    {
+        const double *body = &rays->directions[(ptrdiff_t) 3 * i];
         double direction[3];
         for (int axis = 0; axis < 3; axis++)
         {
-            const double *row = &attitude[3 * axis];
+            const double *row = rays->attitude[axis];
             direction[axis] = (row[0] * body[0]) + (row[1] * body[1]) + (row[2] * body[2]);
         }
-        double t_in = 0.0;
-        double t_out = range_max_m;
-        ray.d_row = direction[0] * scale;
-        ray.d_col = direction[1] * scale;
-        ray.d_z = direction[2];
-        /* an axis along which the ray stands still is never crossed */
-        ray.inverse_row = (fabs(ray.d_row) < 1e-12) ? 1e300 : 1.0 / ray.d_row;
-        ray.inverse_col = (fabs(ray.d_col) < 1e-12) ? 1e300 : 1.0 / ray.d_col;
-        double t_hit = NAN;
-        if (clip_axis(ray.row0, ray.d_row, (double) (terrain->rows - 1), &t_in, &t_out) &&
-            clip_axis(ray.col0, ray.d_col, (double) (terrain->cols - 1), &t_in, &t_out))
-        {
-            const place_t place = {t_in,
-                                   clamp_cell(ray.row0 + (t_in * ray.d_row), 0, terrain->rows - 2),
-                                   clamp_cell(ray.col0 + (t_in * ray.d_col), 0, terrain->cols - 2)};
-            t_hit = trace(terrain, levels, level_count, &ray, place, t_out);
-        }
-        range_m[i] = (float) t_hit;
+        range_m[i] = (float) cast(&view, direction, rays->range_max_m);
     }
 }

@@ -21,9 +21,8 @@
 #define SIM_WHEEL_DISC 1
 #define SIM_WHEEL_CYLINDER 2
 
-/** The height pyramid groups 4 x 4 cells per level: a level-L block spans 4^L cells. */
-#define SIM_PYRAMID_SHIFT 2
-#define SIM_PYRAMID_LEVELS_MAX 8
+/** Levels of the roof, which lets rays skip empty space. */
+#define SIM_ROOF_LEVELS_MAX 10
 
 /** Nodes z[row][col], row growing north, col growing east; bilinear in between. NaN is no ground. */
 typedef struct
@@ -128,26 +127,39 @@ void sim_settle_hubs(const sim_vehicle_t *vehicle,
                      const double *hub_z_site_m,
                      sim_settled_t *out);
 
-/** Number of pyramid floats for a terrain; level_count receives the number of levels. */
-int64_t sim_pyramid_size(int32_t rows, int32_t cols, int32_t *level_count);
+/** Rays from one origin: count unit vectors in a frame that attitude, by rows, turns to SITE. */
+typedef struct
+{
+    double origin_site_m[3];
+    double attitude[3][3];
+    double range_max_m;
+    const double *directions;
+    int32_t count;
+    int32_t reserved;
+} sim_rays_t;
 
-/** Fills the pyramid of highest ground (smallest z) per block; NaN nodes count as infinitely low. */
-void sim_pyramid_build(const sim_terrain_t *terrain, float *pyramid);
+/** Number of floats of the roof of a terrain. */
+int64_t sim_roof_size(int32_t rows, int32_t cols);
 
 /**
- * First hit of count rays from one origin with the bilinear surface.
+ * Fills the roof: levels of blocks of 1, 2, 4 ... cells that hold the highest ground (smallest z) of
+ * a block and its neighbours. Cells without ground (a NaN node) count as infinitely low.
+ */
+void sim_roof_build(const sim_terrain_t *terrain, float *roof);
+
+/** Number of floats that sim_raycast needs to work in; they need no content. */
+int64_t sim_raycast_table_size(const sim_terrain_t *terrain, double range_max_m);
+
+/**
+ * First hit of every ray with the bilinear surface.
  *
- * directions: count unit vectors in a frame that attitude, a rotation matrix by rows, turns to SITE.
- * range_m receives the distance, or NaN where the ray leaves
- * the map or exceeds range_max_m. A ray that starts below the ground has range 0.
+ * range_m receives the distance, or NaN where the ray leaves the map or exceeds range_max_m. A ray
+ * that starts below the ground has range 0. The origin must be finite.
  */
 void sim_raycast(const sim_terrain_t *terrain,
-                 const float *pyramid,
-                 const double *origin_site_m,
-                 const double *attitude,
-                 const double *directions,
-                 int32_t count,
-                 double range_max_m,
+                 const float *roof,
+                 const sim_rays_t *rays,
+                 float *table,
                  float *range_m);
 
 #endif

@@ -159,7 +159,7 @@ def test_a_real_dem_as_base(data_dir: Path) -> None:
         {"seed": 2**64},
         {"rock_diameter_min_m": 0},
         {"rock_diameter_min_m": 1, "rock_diameter_max_m": 1},
-        {"base_file": "x", "landform": Landform(kind="crater")},
+        {"base_file": "x", "bases": ({"file": "y"},)},
         {"undulation": ({"horizontal_scale_m": 0, "height_span_m": 1},)},
     ],
 )
