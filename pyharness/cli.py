@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pyharness.cli_terrain import terrain
+from pyharness.cli_types import Assignment, Numbers, as_options
 from pyharness.errors import HarnessError
 from sim.errors import SimError
 
@@ -22,47 +24,6 @@ EXIT_FAULT = 3
 EXIT_INTERRUPTED = 130
 MODES = ("unguarded", "guarded", "avoid_koz", "avoid_all")
 TABLE_FORMATS = ("text", "yaml", "markdown")
-
-
-class Numbers(click.ParamType):  # type: ignore[type-arg]
-    """Numbers separated by commas, e.g. `-40,0,0`."""
-
-    name = "numbers"
-
-    def __init__(self, names: str) -> None:
-        self.names = names
-        self.count = names.count(",") + 1
-
-    def get_metavar(self, *_: Any, **__: Any) -> str:
-        """Return what the help shows."""
-        return self.names
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> list[float]:
-        """Read the text."""
-        try:
-            numbers = [float(part) for part in str(value).split(",")]
-        except ValueError:
-            numbers = []
-        if len(numbers) != self.count:
-            self.fail(f"expected {self.names}, got {value!r}", param, ctx)
-        return numbers
-
-
-class Assignment(click.ParamType):  # type: ignore[type-arg]
-    """`key=value`."""
-
-    name = "key=value"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[str, str]:
-        """Split the text."""
-        key, sign, text = str(value).partition("=")
-        if not sign or not key:
-            self.fail(f"expected key=value, got {value!r}", param, ctx)
-        return key, text
 
 
 @click.group()
@@ -94,68 +55,7 @@ def _fail(message: str) -> int:
     return EXIT_BAD_INPUT
 
 
-# ------------------------------------------------------------------ enav terrain
-
-
-@cli.group()
-def terrain() -> None:
-    """Make terrains."""
-
-
-@terrain.command("generate")
-@click.option("-o", "out", type=click.Path(path_type=Path), required=True, help="T.pgm to write.")
-@click.option("--recipe", type=click.Path(path_type=Path), help="Recipe, or the YAML of a terrain.")
-@click.option("--size-m", type=float, help="Edge of the square (120).")
-@click.option("--resolution-m", type=float, help="Distance between nodes (0.1).")
-@click.option("--base", type=click.Path(path_type=Path), help="Terrain or DEM to start from.")
-@click.option("--base-center-m", type=Numbers("N,E"), help="Middle, from the middle of the base.")
-@click.option("--base-scale", type=float, help="Factor on the heights of the base.")
-@click.option("--landform", metavar="KIND", help="Made base: crater, cliff, valley, maze, ...")
-@click.option("--slope-deg", type=float, help="Constant slope.")
-@click.option("--slope-azimuth-deg", type=float, help="Up-slope direction; drawn if not given.")
-@click.option("--cfa", type=float, help="Cumulative fractional area of rocks, e.g. 0.07.")
-@click.option(
-    "--undulation",
-    type=Numbers("SCALE_M,SPAN_M"),
-    multiple=True,
-    help="A layer: horizontal scale, height span. May be repeated.",
-)
-@click.option("--rock-diameter-m", type=Numbers("MIN,MAX"), help="Smallest and largest rock.")
-@click.option("--start", type=Numbers("N,E,YAW_DEG"), help="Start of a drive, to clear of rocks.")
-@click.option("--seed", type=int, help="Of everything random.")
-def terrain_generate(out: Path, recipe: Path | None, **options: Any) -> int:
-    """Make one terrain: T.pgm, T.yaml beside it to remake it, T.rocks.csv."""
-    from pyharness.terrain_files import generate_terrain
-    from sim.errors import ConfigError
-
-    try:
-        made = generate_terrain(out, recipe, _recipe_overrides(options))
-    except ConfigError as error:
-        raise _as_options(error, options) from None
-    size_m = made.north_max_m - made.north_min_m + made.resolution_m
-    click.echo(f"{out}: {size_m:g} x {size_m:g} m, {len(made.rocks)} rocks")
-    return 0
-
-
-def _recipe_overrides(options: Mapping[str, Any]) -> dict[str, object]:
-    """Return the keys of a recipe that the options stand for."""
-    given = {key: value for key, value in options.items() if value not in (None, ())}
-    if "base" in given:
-        given["base_file"] = str(given.pop("base").absolute())
-    if "landform" in given:
-        given["landform"] = {"kind": given["landform"]}
-    if "undulation" in given:
-        given["undulation"] = [
-            {"horizontal_scale_m": scale_m, "height_span_m": span_m}
-            for scale_m, span_m in given["undulation"]
-        ]
-    if "rock_diameter_m" in given:
-        low_m, high_m = given.pop("rock_diameter_m")
-        given["rock_diameter_min_m"], given["rock_diameter_max_m"] = low_m, high_m
-    if "start" in given:
-        north_m, east_m, yaw_deg = given.pop("start")
-        given["start_m"], given["start_yaw_deg"] = [north_m, east_m], yaw_deg
-    return given
+cli.add_command(terrain)
 
 
 # ------------------------------------------------------------------ enav drive
@@ -194,7 +94,7 @@ def drive_command(
         ground = make_terrain(scenario)
         check_places(scenario, ground, scenario_file, overrides)
     except ConfigError as error:
-        raise _as_options(error, options) from None
+        raise as_options(error, options) from None
     try:
         with _ProgressBar() as bar:
             summary = run_drive(scenario, ground, folder, force, bar.show)
@@ -218,16 +118,6 @@ def _scenario_overrides(options: Mapping[str, Any]) -> dict[str, object]:
     if "goal" in given:
         given["waypoints"] = None
     return given
-
-
-def _as_options(error: SimError, options: Mapping[str, Any]) -> HarnessError:
-    """Name the option in a message about a key that an option gave."""
-    text = str(error)
-    for key, value in options.items():
-        name = key.removesuffix("_file")
-        if value is not None:
-            text = text.replace(f"--set {name}:", f"--{name.replace('_', '-')}:")
-    return HarnessError(text)
 
 
 def _outcome_text(summary: Mapping[str, Any]) -> str:

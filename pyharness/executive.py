@@ -140,6 +140,7 @@ class Executive:
         self._job: Job | None = None
         self._is_look_around_due = False
         self._selection: Selection | None = None
+        self._is_leaving = False
         self._evaluate_at_s = math.inf
         self._verdict = "nothing had been checked yet"
         self._unsafe_count = 0
@@ -236,6 +237,7 @@ class Executive:
         else:
             self._no_path_count = 0
             self._cycle += 1
+            self._is_leaving = selection.is_leaving
             self._verdict = f"select_arc had passed the arc in mode {self._goal.mode}"
             self._begin_arc(selection.arc)
 
@@ -447,6 +449,7 @@ class Executive:
             self._uncertainty(0.0),
             self._remaining_part,
             self._goal.mode,
+            self._is_leaving,
         )
         cycle = self._cycle
 

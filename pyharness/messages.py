@@ -141,15 +141,21 @@ def select_request(
 
 
 def evaluate_request(
-    time_s: float, pose: Pose6, uncertainty: Uncertainty, arc: Arc, mode: str
+    time_s: float,
+    pose: Pose6,
+    uncertainty: Uncertainty,
+    arc: Arc,
+    mode: str,
+    is_leaving: bool = False,
 ) -> Message:
-    """Return the request to evaluate one arc."""
+    """Return the request to evaluate one arc, by the leave limits if it was selected by them."""
     request = new_message(Kind.EVALUATE_ARC_IN)
     request["time_s"] = time_s
     _put_pose(request["pose"], pose)
     _put_uncertainty(request["uncertainty"], uncertainty)
     _put_arc(request["arc"], arc)
     request["mode"] = Mode[mode.upper()]
+    request["is_leaving"] = is_leaving
     return request
 
 

@@ -32,7 +32,7 @@ def generate_terrain(out: Path, recipe: Path | None, overrides: Mapping[str, obj
 def load_recipe(path: Path | None, overrides: Mapping[str, object]) -> TerrainRecipe:
     """Read a recipe; the YAML file of a terrain holds one too.
 
-    Files that a recipe names are looked for beside it, those of the overrides in this folder.
+    Files that a recipe names are looked for beside it.
     """
     if path is None:
         return parse_model("", "recipe", TerrainRecipe, overrides).with_files_in(Path())

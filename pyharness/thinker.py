@@ -39,6 +39,7 @@ class Selection:
 
     arc: Arc | None
     rejections: str
+    is_leaving: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,13 +91,19 @@ class Thinker:
         arc = Arc(float(answer["arc"]["length_m"]), float(answer["arc"]["heading_change_rad"]))
         if arc.is_empty or not math.isfinite(arc.length_m + arc.heading_change_rad):
             raise PlannerFaultError(f"select_arc answered an arc that leads nowhere: {arc}")
-        return Selection(arc, rejections), duration_s
+        return Selection(arc, rejections, bool(answer["is_leaving"])), duration_s
 
     def evaluate(
-        self, time_s: float, pose: Pose6, uncertainty: Uncertainty, arc: Arc, mode: str
+        self,
+        time_s: float,
+        pose: Pose6,
+        uncertainty: Uncertainty,
+        arc: Arc,
+        mode: str,
+        is_leaving: bool,
     ) -> tuple[Verdict, float]:
         """Have an arc evaluated; return the verdict and the compute time."""
-        request = messages.evaluate_request(time_s, pose, uncertainty, arc, mode)
+        request = messages.evaluate_request(time_s, pose, uncertainty, arc, mode, is_leaving)
         answer = self._ask(self.planner.evaluate_arc, "evaluate_arc", request)
         duration_s = self.times.evaluate_base_s
         duration_s += self.times.evaluate_per_pose_s * int(answer["pose_count"])

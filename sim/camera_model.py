@@ -139,7 +139,8 @@ def linearised(model: Cahvore) -> Cahv:
 
 def rays(model: Cahvore, col: npt.ArrayLike, row: npt.ArrayLike) -> Array:
     """Unit vectors [..., 3] along which pixels look."""
-    a, h, v, o = (np.array(axis) for axis in (model.a, model.h, model.v, model.o))
+    a, h, v = (np.array(axis) for axis in (model.a, model.h, model.v))
+    o = _unit(np.array(model.o))
     ideal = _cahv_rays(a, h, v, np.asarray(col)[..., None], np.asarray(row)[..., None])
     along = ideal @ o
     across = ideal - along[..., None] * o

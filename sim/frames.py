@@ -19,3 +19,29 @@ def rotation(roll_rad: float, pitch_rad: float, yaw_rad: float) -> npt.NDArray[n
             [-sp, cp * sr, cp * cr],
         ]
     )
+
+
+def turned(
+    roll_rad: float, pitch_rad: float, yaw_rad: float, vector: tuple[float, float, float]
+) -> tuple[float, float, float]:
+    """`rotation(...) @ vector`, for one vector at a time."""
+    cr, sr = math.cos(roll_rad), math.sin(roll_rad)
+    cp, sp = math.cos(pitch_rad), math.sin(pitch_rad)
+    cy, sy = math.cos(yaw_rad), math.sin(yaw_rad)
+    x, y, z = vector
+    y, z = cr * y - sr * z, sr * y + cr * z
+    x, z = cp * x + sp * z, cp * z - sp * x
+    return cy * x - sy * y, sy * x + cy * y, z
+
+
+def turned_back(
+    roll_rad: float, pitch_rad: float, yaw_rad: float, vector: tuple[float, float, float]
+) -> tuple[float, float, float]:
+    """`rotation(...).T @ vector`, for one vector at a time."""
+    cr, sr = math.cos(roll_rad), math.sin(roll_rad)
+    cp, sp = math.cos(pitch_rad), math.sin(pitch_rad)
+    cy, sy = math.cos(yaw_rad), math.sin(yaw_rad)
+    x, y, z = vector
+    x, y = cy * x + sy * y, cy * y - sy * x
+    x, z = cp * x - sp * z, sp * x + cp * z
+    return x, cr * y + sr * z, cr * z - sr * y

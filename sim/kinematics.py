@@ -42,9 +42,10 @@ def pose_along(
     x_m, y_m, yaw_rad = start
     turned = fraction * arc.heading_change_rad
     length_m = fraction * arc.length_m
-    # chord of the arc: length * sinc(turn / 2), along the mean heading
-    chord_m = length_m * float(np.sinc(turned / (2.0 * math.pi)))
-    heading = yaw_rad + 0.5 * turned
+    # chord of the arc, along the mean heading
+    half = 0.5 * turned
+    chord_m = length_m * (math.sin(half) / half if half != 0.0 else 1.0)
+    heading = yaw_rad + half
     return x_m + chord_m * math.cos(heading), y_m + chord_m * math.sin(heading), yaw_rad + turned
 
 

@@ -15,10 +15,11 @@ import numpy.typing as npt
 from pydantic import Field
 
 from sim.config import ConfigModel
-from sim.frames import rotation
+from sim.frames import turned, turned_back
 from sim.settle import SettledState
 
 Array = npt.NDArray[np.float64]
+Vector = tuple[float, float, float]
 
 
 class NoiseConfig(ConfigModel):
@@ -74,12 +75,13 @@ class Localization:
         self._config = config
         self._rng = rng
         sigma_rad = math.radians(config.attitude_sigma_deg)
-        self._attitude_error = sigma_rad * rng.standard_normal(3)
+        errors = (sigma_rad * rng.standard_normal(3)).tolist()
+        self._roll_error, self._pitch_error, self._yaw_error = errors
         self._truth = start
-        self._position = _position(start)
+        self._position: Vector = (start.x_m, start.y_m, start.z_m)
         self._fix_truth = start
         self._fix_position = self._position
-        self._fix_yaw_error = float(self._attitude_error[2])
+        self._fix_yaw_error = self._yaw_error
         self._fix_distance_m = 0.0
         # covariance of north, east and yaw at the last fix
         self._covariance = np.diag([0.0, 0.0, sigma_rad**2])
@@ -93,16 +95,15 @@ class Localization:
                 truth.x_m, truth.y_m, truth.z_m, truth.roll_rad, truth.pitch_rad, truth.yaw_rad,
                 0.0, 0.0, 0.0,
             )  # fmt: skip
-        x_m, y_m, z_m = self._position.tolist()
-        roll_error, pitch_error, yaw_error = self._attitude_error.tolist()
+        x_m, y_m, z_m = self._position
         local_m = self._config.odometry_sigma_fraction * self._fix_distance_m
         return PoseEstimate(
             x_m=x_m,
             y_m=y_m,
             z_m=z_m,
-            roll_rad=truth.roll_rad + roll_error,
-            pitch_rad=truth.pitch_rad + pitch_error,
-            yaw_rad=truth.yaw_rad + yaw_error,
+            roll_rad=truth.roll_rad + self._roll_error,
+            pitch_rad=truth.pitch_rad + self._pitch_error,
+            yaw_rad=truth.yaw_rad + self._yaw_error,
             sigma_position_m=math.sqrt(_largest_variance(self._covariance) + local_m**2),
             sigma_local_m=local_m,
             sigma_yaw_rad=math.sqrt(self._covariance[2, 2]),
@@ -118,14 +119,14 @@ class Localization:
             return
         if not (truth.on_map and self._truth.on_map):
             return
-        felt = np.array([north_m, east_m, truth.z_m - self._truth.z_m])
+        felt = (north_m, east_m, truth.z_m - self._truth.z_m)
         self._truth = truth
         drift_rad = math.radians(self._config.heading_drift_deg_sqrt_h) * math.sqrt(
             elapsed_s / 3600.0
         )
-        self._attitude_error[2] += drift_rad * float(self._rng.standard_normal())
+        self._yaw_error += drift_rad * float(self._rng.standard_normal())
         self._covariance[2, 2] += drift_rad**2
-        self._position = self._position + self._turn(truth, self._attitude_error) @ felt
+        self._position = _sum(self._position, self._believed(truth, self._yaw_error, felt))
         self._fix_distance_m += math.hypot(north_m, east_m)
 
     def fix(self) -> bool:
@@ -138,43 +139,44 @@ class Localization:
             return True
         # always the same number of draws, so that a failure does not shift the stream
         chance = float(self._rng.random())
-        noise = self._rng.standard_normal(4)
+        noise = self._rng.standard_normal(4).tolist()
         succeeds = chance >= config.vo_failure_probability
         if succeeds:
-            error = self._attitude_error.copy()
-            error[2] = self._fix_yaw_error
-            measured = _position(self._truth) - _position(self._fix_truth)
-            self._position = (
-                self._fix_position
-                + self._turn(self._fix_truth, error) @ measured
-                + config.vo_sigma_fraction * distance_m * noise[:3]
+            here, there = self._truth, self._fix_truth
+            measured = (here.x_m - there.x_m, here.y_m - there.y_m, here.z_m - there.z_m)
+            sigma_m = config.vo_sigma_fraction * distance_m
+            self._position = _sum(
+                _sum(self._fix_position, self._believed(there, self._fix_yaw_error, measured)),
+                (sigma_m * noise[0], sigma_m * noise[1], sigma_m * noise[2]),
             )
             yaw_sigma_rad = math.radians(config.vo_yaw_sigma_deg) if distance_m > 0 else 0.0
-            self._attitude_error[2] = self._fix_yaw_error + yaw_sigma_rad * float(noise[3])
+            self._yaw_error = self._fix_yaw_error + yaw_sigma_rad * noise[3]
             self._covariance[2, 2] += yaw_sigma_rad**2
         sigma_fraction = config.vo_sigma_fraction if succeeds else config.odometry_sigma_fraction
         self._grow(sigma_fraction * distance_m)
         self._fix_truth = self._truth
         self._fix_position = self._position
-        self._fix_yaw_error = float(self._attitude_error[2])
+        self._fix_yaw_error = self._yaw_error
         self._fix_distance_m = 0.0
         return succeeds
 
     def _grow(self, sigma_m: float) -> None:
         """Carry the covariance over the stretch since the last fix: heading error swings it."""
-        north_m, east_m, _ = (self._position - self._fix_position).tolist()
+        north_m = self._position[0] - self._fix_position[0]
+        east_m = self._position[1] - self._fix_position[1]
         swing = np.array([[1.0, 0.0, -east_m], [0.0, 1.0, north_m], [0.0, 0.0, 1.0]])
         self._covariance = swing @ self._covariance @ swing.T
         self._covariance[[0, 1], [0, 1]] += sigma_m**2
 
-    @staticmethod
-    def _turn(truth: SettledState, error: Array) -> Array:
-        """Rotation from true SITE directions to those that a wrong attitude makes of them."""
-        estimated = rotation(
-            truth.roll_rad + error[0], truth.pitch_rad + error[1], truth.yaw_rad + error[2]
+    def _believed(self, truth: SettledState, yaw_error: float, vector: Vector) -> Vector:
+        """What a true SITE vector becomes when it is laid out with a wrong attitude."""
+        body = turned_back(truth.roll_rad, truth.pitch_rad, truth.yaw_rad, vector)
+        return turned(
+            truth.roll_rad + self._roll_error,
+            truth.pitch_rad + self._pitch_error,
+            truth.yaw_rad + yaw_error,
+            body,
         )
-        turn: Array = estimated @ rotation(truth.roll_rad, truth.pitch_rad, truth.yaw_rad).T
-        return turn
 
 
 def _largest_variance(covariance: Array) -> float:
@@ -183,5 +185,5 @@ def _largest_variance(covariance: Array) -> float:
     return float(0.5 * (a + c) + math.hypot(0.5 * (a - c), b))
 
 
-def _position(state: SettledState) -> Array:
-    return np.array([state.x_m, state.y_m, state.z_m])
+def _sum(one: Vector, other: Vector) -> Vector:
+    return one[0] + other[0], one[1] + other[1], one[2] + other[2]

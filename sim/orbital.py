@@ -318,10 +318,15 @@ def _largest_part(passable: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
 
 
 def _draw_cells(weight: Grid, count: int, rng: np.random.Generator) -> npt.NDArray[np.int64]:
-    """Cells [count, 2] drawn with these weights, each once where there are enough."""
+    """Cells [count, 2] drawn with these weights, each once where there are enough.
+
+    Exponential keys: a larger count begins with the cells of a smaller one.
+    """
     flat = weight.reshape(-1)
-    again = bool(np.count_nonzero(flat) < count)
-    chosen = rng.choice(flat.size, size=count, replace=again, p=flat / flat.sum())
+    with np.errstate(divide="ignore"):
+        key = np.where(flat > 0, rng.standard_exponential(flat.size) / flat, np.inf)
+    usable = int(np.count_nonzero(flat))
+    chosen = np.resize(np.argsort(key, kind="stable")[: min(count, usable)], count)
     return np.column_stack(np.unravel_index(chosen, weight.shape))
 
 

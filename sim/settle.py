@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Settling of the rocker-bogie rover on a terrain (kernel: `kernels/settle.c`)."""
 
+import struct
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +16,12 @@ from sim.vehicle import Vehicle
 
 SETTLED_DTYPE = dtype_of("sim_settled_t")
 RESOLUTION_MAX_M = 1.0
+
+# a settled state begins with these doubles, x_m to residual_m, and ends with these integers
+_HEAD = struct.Struct("=13d")
+_FLAGS = struct.Struct("=3i")
+_CONTACTS_OFFSET = ffi.offsetof("sim_settled_t", "contact_site_m")
+_FLAGS_OFFSET = ffi.offsetof("sim_settled_t", "iterations")
 
 _WHEEL_KIND = {
     "point": lib.SIM_WHEEL_POINT,
@@ -148,6 +155,30 @@ class Settler:
         )
         return out
 
+    def chain(self) -> "SettleChain":
+        """For poses one after the other, each settled from the one before it."""
+        return SettleChain(self._terrain_c, self._vehicle_c)
+
+
+class SettleChain:
+    """Settles along a drive, with as little as possible between Python and the kernel."""
+
+    def __init__(self, terrain_c: Any, vehicle_c: Any) -> None:
+        """Begin without a state to start from."""
+        self._terrain_c = terrain_c
+        self._vehicle_c = vehicle_c
+        self._pose = ffi.new("double[3]")
+        self._last, self._next = ffi.new("sim_settled_t *"), ffi.new("sim_settled_t *")
+
+    def settle(self, north_m: float, east_m: float, yaw_rad: float) -> tuple[Any, ...]:
+        """Settle at a pose; the fields of SettledState in their order."""
+        pose = self._pose
+        pose[0], pose[1], pose[2] = north_m, east_m, yaw_rad
+        guess = self._last if self._last.on_map else ffi.NULL
+        lib.sim_settle(self._terrain_c, self._vehicle_c, pose, guess, self._next)
+        self._last, self._next = self._next, self._last
+        return _fields_of(self._last)
+
 
 def settle_on_hub_heights(
     vehicle: Vehicle, yaw_rad: float, hub_z_site_m: npt.ArrayLike
@@ -177,23 +208,13 @@ def _guess_struct(guess: SettledState | None) -> Any:
 
 
 def _state_of(out: Any) -> SettledState:
-    contact = np.frombuffer(ffi.buffer(out, SETTLED_DTYPE.itemsize), dtype=SETTLED_DTYPE)[0]
-    return SettledState(
-        x_m=out.x_m,
-        y_m=out.y_m,
-        z_m=out.z_m,
-        roll_rad=out.roll_rad,
-        pitch_rad=out.pitch_rad,
-        yaw_rad=out.yaw_rad,
-        rocker_rad=out.rocker_rad,
-        bogie_left_rad=out.bogie_left_rad,
-        bogie_right_rad=out.bogie_right_rad,
-        tilt_rad=out.tilt_rad,
-        clearance_m=out.clearance_m,
-        wheel_drop_m=out.wheel_drop_m,
-        contact_site_m=contact["contact_site_m"].copy(),
-        residual_m=out.residual_m,
-        iterations=out.iterations,
-        converged=bool(out.converged),
-        on_map=bool(out.on_map),
-    )
+    return SettledState(*_fields_of(out))
+
+
+def _fields_of(out: Any) -> tuple[Any, ...]:
+    """Values of a C struct in the order of SettledState."""
+    content = bytes(ffi.buffer(out))
+    iterations, converged, on_map = _FLAGS.unpack_from(content, _FLAGS_OFFSET)
+    contacts = np.frombuffer(content, np.float64, 18, _CONTACTS_OFFSET).reshape(6, 3)
+    *head, residual_m = _HEAD.unpack_from(content)
+    return (*head, contacts, residual_m, iterations, bool(converged), bool(on_map))

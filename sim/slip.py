@@ -7,6 +7,7 @@ a tilt comes from a table, or from a Gaussian around it; yaw slip is a Brownian 
 """
 
 import math
+from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -16,6 +17,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from sim.config import ConfigModel, parse_model
+from sim.terrain import CLASS_NAMES
 
 TerrainClass = Literal["bedrock", "cohesive_soil", "sand"]
 
@@ -30,7 +32,7 @@ class SlipConfig(ConfigModel):
 
     Attributes:
         enabled: False: the rover moves exactly as commanded.
-        terrain_class: Which table.
+        terrain_class: Which table, where the terrain's class map does not say.
         mode: table: always the mean; gaussian: drawn around it.
         lateral_share: Drift across the slope per metre, as a share of the slip at that tilt. No
             number is published; "the same order" is, so half.
@@ -62,9 +64,17 @@ class SlipTable(ConfigModel):
 
     def at(self, tilt_rad: float) -> tuple[float, float]:
         """Mean and standard deviation at a tilt, linear in between, constant outside."""
-        tilt_deg = math.degrees(tilt_rad)
-        mean = float(np.interp(tilt_deg, self.tilt_deg, self.slip_mean))
-        return mean, float(np.interp(tilt_deg, self.tilt_deg, self.slip_sigma))
+        tilt_deg, places = math.degrees(tilt_rad), self.tilt_deg
+        after = bisect_right(places, tilt_deg)
+        if after == 0 or after == len(places):
+            nearest = min(after, len(places) - 1)
+            return self.slip_mean[nearest], self.slip_sigma[nearest]
+        low, high = after - 1, after
+        part = (tilt_deg - places[low]) / (places[high] - places[low])
+        return (
+            self.slip_mean[low] + part * (self.slip_mean[high] - self.slip_mean[low]),
+            self.slip_sigma[low] + part * (self.slip_sigma[high] - self.slip_sigma[low]),
+        )
 
 
 @cache
@@ -92,42 +102,47 @@ class SlipModel:
         """Start with fresh draws."""
         self._config = config
         self._rng = rng
-        self._table = load_slip_table(config.terrain_class)
+        # by number in a class map; what the map leaves open is configured
+        self._tables = tuple(
+            load_slip_table(config.terrain_class if name == CLASS_NAMES[0] else name)  # type: ignore[arg-type]
+            for name in CLASS_NAMES
+        )
         self._distance_m = 0.0
         self._draw_end_m = 0.0
         self._eta = 0.0
 
-    def expected(self, tilt_rad: float) -> float:
+    def expected(self, tilt_rad: float, class_number: int = 0) -> float:
         """Mean slip at a tilt when driving straight up it."""
-        return self._table.at(tilt_rad)[0] if self._config.enabled else 0.0
+        return self._tables[class_number].at(tilt_rad)[0] if self._config.enabled else 0.0
 
     def step(
         self,
-        north_m: float,
-        east_m: float,
+        motion_m: tuple[float, float],
         wheel_path_m: float,
-        roll_rad: float,
-        pitch_rad: float,
-        yaw_rad: float,
+        attitude_rad: tuple[float, float, float],
+        class_number: int = 0,
     ) -> SlippedStep:
-        """Actual step for a commanded one (north, east) from a settled attitude.
+        """Actual step for a commanded one (north, east) from a settled (roll, pitch, yaw).
 
-        `wheel_path_m` is what the wheels roll, also when the rover turns in place.
+        `wheel_path_m` is what the wheels roll, also when the rover turns in place; `class_number`
+        is the terrain class under the rover, as in a class map.
         """
+        north_m, east_m = motion_m
         if not self._config.enabled:
             return SlippedStep(north_m, east_m, 0.0, 0.0)
         self._advance(wheel_path_m)
-        uphill_north, uphill_east, tilt_rad = _uphill(roll_rad, pitch_rad, yaw_rad)
-        slip_tilt, level = self._factor(tilt_rad), self._table.at(0.0)[0]
+        uphill_north, uphill_east, tilt_rad = _uphill(*attitude_rad)
+        table = self._tables[class_number]
+        # on the level the whole slip holds back; of what the slope adds, the part along the motion
+        level = self._factor(table, 0.0)
+        added = self._factor(table, tilt_rad) - level
         length_m = math.hypot(north_m, east_m)
         along, across = 0.0, 1.0
         if length_m > 0.0:
             along = (north_m * uphill_north + east_m * uphill_east) / length_m
             across = math.sqrt(max(0.0, 1.0 - along * along)) if tilt_rad > 0.0 else 0.0
-        # on the level the whole slip holds back; of what the slope adds, the part along the motion
-        base = min(level, slip_tilt)
-        slip = min(max(base + (slip_tilt - base) * along, SLIP_MIN), SLIP_MAX)
-        drift_m = self._config.lateral_share * (slip_tilt - base) * across * wheel_path_m
+        slip = min(max(level + added * along, SLIP_MIN), SLIP_MAX)
+        drift_m = self._config.lateral_share * added * across * wheel_path_m
         sigma_rad = math.radians(self._config.yaw_sigma_deg_sqrt_m)
         return SlippedStep(
             north_m * (1.0 - slip) - drift_m * uphill_north,
@@ -143,10 +158,10 @@ class SlipModel:
             self._draw_end_m += DRAW_DISTANCE_M
         self._distance_m += wheel_path_m
 
-    def _factor(self, tilt_rad: float) -> float:
-        mean, sigma = self._table.at(tilt_rad)
+    def _factor(self, table: SlipTable, tilt_rad: float) -> float:
+        mean, sigma = table.at(tilt_rad)
         eta = self._eta if self._config.mode == "gaussian" else 0.0
-        return min(max(mean + sigma * eta, 0.0), SLIP_MAX)
+        return min(max(mean + sigma * eta, SLIP_MIN), SLIP_MAX)
 
 
 def _uphill(roll_rad: float, pitch_rad: float, yaw_rad: float) -> tuple[float, float, float]:

@@ -57,6 +57,21 @@ class Belly(ConfigModel):
         return self
 
 
+class Deck(ConfigModel):
+    """The body as the cameras see it: a box from the belly pan up to the deck."""
+
+    front_m: float
+    rear_m: float
+    half_width_m: PositiveM
+    height_m: PositiveM
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.rear_m >= self.front_m:
+            raise ValueError("rear_m must be less than front_m")
+        return self
+
+
 class Settling(ConfigModel):
     """How wheels touch the ground, and when settling has converged."""
 
@@ -93,15 +108,26 @@ class NavlibLimits(ConfigModel):
 
 
 class Vehicle(ConfigModel):
-    """One vehicle, as its YAML file says."""
+    """One vehicle, as its YAML file says.
+
+    Attributes:
+        deck: What hides the ground from the cameras; without it nothing does.
+    """
 
     name: str
     geometry: Geometry
     belly: Belly
+    deck: Deck | None = None
     settling: Settling = Settling()
     drive: Drive
     fault_limits: FaultLimits
     navlib_limits: NavlibLimits
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.deck is not None and self.deck.height_m <= self.belly.height_m:
+            raise ValueError("deck.height_m must be more than belly.height_m")
+        return self
 
     @property
     def hubs_m(self) -> npt.NDArray[np.float64]:

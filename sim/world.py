@@ -2,6 +2,7 @@
 """HDSim: the rover in its terrain, driven along arcs in steps of an eighth of a second."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,7 +61,7 @@ class World:
         """Settle the rover at start = (north, east, yaw)."""
         self.terrain = terrain
         self.vehicle = vehicle
-        self._settler = Settler(terrain, vehicle)
+        self._settling = Settler(terrain, vehicle).chain()
         self._camera = StereoCamera(terrain, vehicle, camera or CameraConfig())
         self._camera_rng = rng_for(seed, "camera")
         self._slip = SlipModel(slip or SlipConfig(), rng_for(seed, "slip"))
@@ -70,7 +71,7 @@ class World:
         self._motion_ticks = 0
         # what slip has added to the commanded pose since the start of the arc
         self._offset = (0.0, 0.0, 0.0)
-        self._truth = self._truth_of(self._settler.settle(*start), slip=0.0)
+        self._truth = self._settled_at(*start, slip=0.0)
         self._localization = Localization(
             noise or NoiseConfig(), self._truth, rng_for(seed, "localization")
         )
@@ -106,7 +107,7 @@ class World:
 
     def expected_slip(self, tilt_rad: float) -> float:
         """Mean slip of the present terrain class when driving up a slope."""
-        return self._slip.expected(tilt_rad)
+        return self._slip.expected(tilt_rad, self._class_number(self._truth))
 
     # -------------------------------------------------------------- commands
 
@@ -141,7 +142,7 @@ class World:
         ticks = math.ceil(duration_s * STEPS_PER_SECOND - 1e-9)
         if ticks > 0:
             self._ticks += ticks
-            self._truth = self._truth_of(self._truth, slip=0.0)
+            self._truth = self._truth_now(slip=0.0)
             self._localization.move(self._truth, 0.0, 0.0, ticks / STEPS_PER_SECOND)
 
     def step(self) -> TruthState:
@@ -164,7 +165,10 @@ class World:
         east_m = sine * (x1 - x0) + cosine * (y1 - y0)
         rolled_m = (after - before) * motion.wheel_path_m
         slipped = self._slip.step(
-            north_m, east_m, rolled_m, old.roll_rad, old.pitch_rad, old.yaw_rad
+            (north_m, east_m),
+            rolled_m,
+            (old.roll_rad, old.pitch_rad, old.yaw_rad),
+            self._class_number(old),
         )
         self._offset = (
             offset_x + slipped.north_m - (x1 - x0),
@@ -174,10 +178,9 @@ class World:
         self._ticks += 1
         self._motion_ticks += 1
         self._distance_m += math.hypot(slipped.north_m, slipped.east_m)
-        settled = self._settler.settle(
-            x1 + self._offset[0], y1 + self._offset[1], yaw1 + self._offset[2], old
+        self._truth = self._settled_at(
+            x1 + self._offset[0], y1 + self._offset[1], yaw1 + self._offset[2], slipped.slip
         )
-        self._truth = self._truth_of(settled, slipped.slip)
         self._localization.move(self._truth, north_m, east_m, 1.0 / STEPS_PER_SECOND)
         return self._truth
 
@@ -187,37 +190,34 @@ class World:
         """Fix the estimate by visual odometry; False when it failed."""
         return self._localization.fix()
 
-    def image(self) -> npt.NDArray[np.float32]:
-        """Point cloud float32 [n, 3] in the rover frame of this instant."""
-        return self._camera.image(self._truth, self._camera_rng)
+    def image(self, azimuths_deg: Sequence[float] | None = None) -> npt.NDArray[np.float32]:
+        """Point cloud float32 [n, 3] in the rover frame of this instant.
 
-    def picture(self) -> npt.NDArray[np.uint8]:
-        """Shaded picture of the left camera."""
-        return self._camera.picture(self._truth)
+        One pair of images for each azimuth, clockwise from forward; the configured ones when None.
+        """
+        return self._camera.image(self._truth, self._camera_rng, azimuths_deg)
 
-    def _truth_of(self, state: SettledState, slip: float) -> TruthState:
-        return TruthState(
-            state.x_m,
-            state.y_m,
-            state.z_m,
-            state.roll_rad,
-            state.pitch_rad,
-            state.yaw_rad,
-            state.rocker_rad,
-            state.bogie_left_rad,
-            state.bogie_right_rad,
-            state.tilt_rad,
-            state.clearance_m,
-            state.wheel_drop_m,
-            state.contact_site_m,
-            state.residual_m,
-            state.iterations,
-            state.converged,
-            state.on_map,
-            self.time_s,
-            slip,
-            self._distance_m,
-        )
+    def picture(
+        self,
+        azimuth_deg: float | None = None,
+        sun_azimuth_deg: float | None = None,
+        sun_elevation_deg: float | None = None,
+    ) -> npt.NDArray[np.uint8]:
+        """Shaded picture of the left camera; the configured directions when None."""
+        return self._camera.picture(self._truth, azimuth_deg, sun_azimuth_deg, sun_elevation_deg)
+
+    def _settled_at(self, north_m: float, east_m: float, yaw_rad: float, slip: float) -> TruthState:
+        self._settled = self._settling.settle(north_m, east_m, yaw_rad)
+        return self._truth_now(slip)
+
+    def _truth_now(self, slip: float) -> TruthState:
+        return TruthState(*(*self._settled, self.time_s, slip, self._distance_m))
+
+    def _class_number(self, state: SettledState) -> int:
+        """Terrain class under the rover's origin."""
+        if self.terrain.classes is None:
+            return 0
+        return int(self.terrain.class_at(state.x_m, state.y_m))
 
 
 def _fraction(motion: _Motion, ticks: int) -> float:

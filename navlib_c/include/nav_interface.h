@@ -76,7 +76,7 @@ NAV_RECORD(NAV_ANALYZE_TERRAIN_OUT_FIELDS, nav_analyze_terrain_out_t);
     N(nav_uncertainty_t, uncertainty, "at that pose")                                              \
     N(nav_arc_t, arc, "any length up to 10 m either way, or a turn in place")                      \
     S(uint32_t, mode, "1", "nav_mode_t: which checks to make")                                     \
-    S(uint32_t, pad_0, "1", "zero")
+    S(uint32_t, is_leaving, "1", "1 for an arc that select_arc passed by the leave limits")
 NAV_RECORD(NAV_EVALUATE_ARC_IN_FIELDS, nav_evaluate_arc_in_t);
 
 #define NAV_EVALUATE_ARC_OUT_FIELDS(S, A, N, M)                                                    \

@@ -74,6 +74,15 @@
     X(bogie_max_rad, 0.5235987756, 0.05, 1.2, "rad",                                               \
       "largest bogie angle [C]: 30 deg; 35 cm under a middle wheel makes 25.5")                    \
     X(wheel_drop_max_m, 0.35, 0.02, 1.0, "m", "largest wheel drop [S]")                            \
+    X(leave_length_m, 1.0, 0.0, 6.0, "m",                                                          \
+      "a rover for which no path passes may drive this far within the leave limits [C]: it must "  \
+      "be able to get away from where it slipped to")                                              \
+    X(leave_clearance_min_m, 0.30, 0.0, 1.0, "m",                                                  \
+      "leave limit [C]: 5 cm above what operators call a fault")                                   \
+    X(leave_tilt_max_rad, 0.5759586532, 0.05, 1.3, "rad", "leave limit [C]: 33 deg; fault at 35")  \
+    X(leave_rocker_max_rad, 0.1919862177, 0.02, 1.0, "rad", "leave limit [C]: 11 deg; fault at 12")\
+    X(leave_bogie_max_rad, 0.6108652382, 0.05, 1.3, "rad", "leave limit [C]: 35 deg; fault at 38") \
+    X(leave_wheel_drop_max_m, 0.42, 0.02, 1.0, "m", "leave limit [C]: 3 cm below a fault")         \
     X(wheel_unknown_max, 0.5, 0.0, 1.0, "1",                                                       \
       "share of a wheel box that may be unknown [C]: shadows of stones behind which it stands")    \
     X(belly_unknown_max, 0.5, 0.0, 1.0, "1", "share of the belly box that may be unknown [C]")     \

@@ -76,6 +76,8 @@ NAV_RECORD(NAV_SELECT_ARC_IN_FIELDS, nav_select_arc_in_t);
     S(double, cost_to_go_s, "s", "from its end to the goal, part of path_cost_s")                  \
     S(uint32_t, ace_evaluations, "1", "ACE poses evaluated in this call")                          \
     S(uint32_t, paths_tested, "1", "")                                                             \
+    S(uint32_t, is_leaving, "1", "1 when only the leave limits let a path pass")                   \
+    S(uint32_t, pad_0, "1", "zero")                                                                \
     A(uint32_t, rejections, NAV_REASON_COUNT, "1", "candidates by nav_reason_t")                   \
     N(nav_ace_bounds_t, bounds, "worst of each bound along the selected path")                     \
     S(uint32_t, path_point_count, "1", "")                                                         \

@@ -227,6 +227,14 @@ static double wheel_swing_m(const nav_vehicle_t *vehicle, const range_t *range, 
     return swing_m;
 }
 
+/** How far a wheel and its box, which stand along the heading, can be turned in the plane. */
+static double turn_of_box(const view_t *view, const range_t *range)
+{
+    return view->uncertainty.yaw_rad +
+           fabs(turn_of_pitch(view, range->middle[NAV_LINKAGE_PITCH])) +
+           fabs(turn_of_pitch(view, range->half[NAV_LINKAGE_PITCH]));
+}
+
 static growth_t growth_wheel(const view_t *view, const range_t *range, uint32_t wheel)
 {
     const double u_m = view->vehicle->hub_x_m[wheel];
@@ -234,6 +242,8 @@ static growth_t growth_wheel(const view_t *view, const range_t *range, uint32_t 
     const double roll = range->half[NAV_LINKAGE_ROLL];
     const double roll_far = fabs(range->middle[NAV_LINKAGE_ROLL]) + roll;
     growth_t growth = growth_common(view, range, u_m, v_m);
+    /* the ends of the disc swing sideways as the rover turns */
+    growth.v_m += turn_of_box(view, range) * view->params->wheel_radius_m;
     /* a wheel above or below the body's ground level leans sideways with roll */
     growth.u_m = nav_clamp(growth.u_m + wheel_swing_m(view->vehicle, range, wheel), GROWTH_MIN_M,
                            GROWTH_MAX_M);
@@ -405,10 +415,7 @@ static nav_box_t wheel_places(const view_t *view, const footprint_t *footprint, 
 static footprint_t wheel_footprint(const view_t *view, const range_t *range, uint32_t wheel)
 {
     const growth_t growth = growth_wheel(view, range, wheel);
-    /* the box turns with the rover */
-    const double turn = view->uncertainty.yaw_rad +
-                        fabs(turn_of_pitch(view, range->middle[NAV_LINKAGE_PITCH])) +
-                        fabs(turn_of_pitch(view, range->half[NAV_LINKAGE_PITCH]));
+    const double turn = turn_of_box(view, range);
     const nav_ground_point_t at =
         from_body(view, range->middle, range->forward_m[wheel], range->right_m[wheel]);
     const footprint_t footprint = {
@@ -419,8 +426,7 @@ static footprint_t wheel_footprint(const view_t *view, const range_t *range, uin
                 (range->half[NAV_LINKAGE_PITCH] * WHEEL_LEAN_M) +
                 (turn * 0.5 * view->params->wheel_width_m),
             (0.5 * view->params->wheel_width_m) + growth.v_m +
-                (range->half[NAV_LINKAGE_ROLL] * WHEEL_LEAN_M) +
-                (turn * view->params->wheel_radius_m),
+                (range->half[NAV_LINKAGE_ROLL] * WHEEL_LEAN_M),
         },
         growth,
         range->height_m[wheel] + view->params->wheel_radius_m,
@@ -513,7 +519,10 @@ static void attitude_bounds(const view_t *view, const linkage_t *linkage, nav_ac
         (roll_half + (turn * slope) + (pitch_half * fabs(nose * right_down) / squared(cos_pitch))) /
         cos_pitch;
 
-    bounds->tilt_max_rad = nav_acos(up) + sqrt(squared(roll_half) + squared(pitch_half));
+    /* turning changes the tilt by no more than the lesser of the two tilts it is made of */
+    const double leaned = fabs(roll) + roll_half + fabs(pitch) + pitch_half;
+    bounds->tilt_max_rad = nav_acos(up) + sqrt(squared(roll_half) + squared(pitch_half)) +
+                           (turn * nav_min(slope, leaned));
     bounds->pitch_min_rad = pitch_site - pitch_reach;
     bounds->pitch_max_rad = pitch_site + pitch_reach;
     bounds->roll_min_rad = roll_site - roll_reach;
@@ -752,41 +761,70 @@ static bool is_beyond(double low, double high, double limit)
     return (low < -limit) || (high > limit);
 }
 
-/** The first limit that a bound exceeds. */
-static nav_reason_t refuse(const nav_params_t *params, const nav_ace_bounds_t *bounds)
+/** The limits that ACE holds bounds against. */
+typedef struct
 {
+    double clearance_min_m;
+    double tilt_max_rad;
+    double rocker_max_rad;
+    double bogie_max_rad;
+    double wheel_drop_max_m;
+} limits_t;
+
+static limits_t limits_of(const nav_params_t *params, bool is_leaving)
+{
+    const limits_t planned = {params->clearance_min_m, params->tilt_max_rad, params->rocker_max_rad,
+                              params->bogie_max_rad, params->wheel_drop_max_m};
+    /* never stricter than what is planned with */
+    const limits_t leaving = {
+        nav_min(params->leave_clearance_min_m, params->clearance_min_m),
+        nav_max(params->leave_tilt_max_rad, params->tilt_max_rad),
+        nav_max(params->leave_rocker_max_rad, params->rocker_max_rad),
+        nav_max(params->leave_bogie_max_rad, params->bogie_max_rad),
+        nav_max(params->leave_wheel_drop_max_m, params->wheel_drop_max_m),
+    };
+    return is_leaving ? leaving : planned;
+}
+
+static bool is_bogie_beyond(const nav_ace_bounds_t *bounds, double limit_rad)
+{
+    return is_beyond(bounds->bogie_left_min_rad, bounds->bogie_left_max_rad, limit_rad) ||
+           is_beyond(bounds->bogie_right_min_rad, bounds->bogie_right_max_rad, limit_rad);
+}
+
+nav_reason_t nav_ace_refuse(const nav_params_t *params, const nav_ace_bounds_t *bounds, bool is_leaving)
+{
+    const limits_t limits = limits_of(params, is_leaving);
     nav_reason_t reason = NAV_REASON_NONE;
     if ((bounds->wheel_unknown > params->wheel_unknown_max) ||
         (bounds->belly_unknown > params->belly_unknown_max))
     {
         reason = NAV_REASON_UNKNOWN;
     }
-    else if (bounds->wheel_drop_max_m > params->wheel_drop_max_m)
+    else if (bounds->wheel_drop_max_m > limits.wheel_drop_max_m)
     {
         reason = NAV_REASON_WHEEL_DROP;
     }
-    else if (bounds->clearance_min_m < params->clearance_min_m)
+    else if (bounds->clearance_min_m < limits.clearance_min_m)
     {
         reason = NAV_REASON_CLEARANCE;
     }
-    else if (bounds->tilt_max_rad > params->tilt_max_rad)
+    else if (bounds->tilt_max_rad > limits.tilt_max_rad)
     {
         reason = NAV_REASON_TILT;
     }
-    else if (is_beyond(bounds->rocker_min_rad, bounds->rocker_max_rad, params->rocker_max_rad))
+    else if (is_beyond(bounds->rocker_min_rad, bounds->rocker_max_rad, limits.rocker_max_rad))
     {
         reason = NAV_REASON_ROCKER;
     }
-    else if (is_beyond(bounds->bogie_left_min_rad, bounds->bogie_left_max_rad,
-                       params->bogie_max_rad) ||
-             is_beyond(bounds->bogie_right_min_rad, bounds->bogie_right_max_rad,
-                       params->bogie_max_rad))
+    else if (is_bogie_beyond(bounds, limits.bogie_max_rad))
     {
         reason = NAV_REASON_BOGIE;
     }
     else
     {
-        reason = NAV_REASON_NONE;
+        /* bounds that are not consistent promise nothing */
+        reason = (bounds->is_certified != 0U) ? NAV_REASON_NONE : NAV_REASON_UNEXPECTED;
     }
     return reason;
 }
@@ -863,7 +901,7 @@ static bool attempt(const view_t *view,
             belly_bounds(view, range, &linkage, bounds);
             is_done = is_consistent(&linkage, range);
             bounds->is_certified = is_done ? 1U : 0U;
-            bounds->reason = (uint32_t) refuse(view->params, bounds);
+            bounds->reason = (uint32_t) nav_ace_refuse(view->params, bounds, false);
             range_next(view, &linkage, attempts_made, range);
         }
     }
@@ -886,10 +924,6 @@ void nav_ace_evaluate(const nav_ace_scene_t *scene,
     for (uint32_t k = 0U; (k < ATTEMPTS) && !is_done; k++)
     {
         is_done = attempt(&view, k, &range, bounds);
-    }
-    if ((bounds->is_certified == 0U) && (bounds->reason == (uint32_t) NAV_REASON_NONE))
-    {
-        bounds->reason = (uint32_t) NAV_REASON_UNEXPECTED;
     }
 }
 

@@ -605,7 +605,9 @@ static nav_reason_t evaluate_pose(const nav_ctx_t *ctx,
     }
     else if (test_terrain)
     {
-        reason = (nav_reason_t) bounds->reason;
+        const bool is_leaving =
+            (in->is_leaving != 0U) && (distance_m <= ctx->params.leave_length_m);
+        reason = nav_ace_refuse(&ctx->params, bounds, is_leaving);
     }
     else
     {

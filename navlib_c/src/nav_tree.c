@@ -31,6 +31,8 @@ typedef struct
     bool use_terrain_cost;
     bool use_zone_cost;
     bool test_terrain;
+    bool is_leaving; /* no path passed the planning limits */
+    uint32_t budget_end; /* of ace_evaluations */
     uint32_t ace_evaluations;
     uint32_t candidate_count;
 } call_t;
@@ -456,7 +458,8 @@ static nav_reason_t test_pose(call_t *call,
         nav_ace_evaluate(&call->scene->ace, pose, &grown, &bounds);
         call->ace_evaluations++;
         worsen(worst, &bounds);
-        reason = (nav_reason_t) bounds.reason;
+        reason = nav_ace_refuse(call->params, &bounds,
+                                call->is_leaving && (distance_m <= call->params->leave_length_m));
         nav_costmap_feedback(call->scene->costmap, pose->x_m, pose->y_m, reason);
     }
     else
@@ -630,7 +633,7 @@ static void test_paths(call_t *call, nav_tree_t *tree, nav_select_arc_out_t *out
                 {
                     rest = NAV_REASON_COST;
                 }
-                else if (call->ace_evaluations >= (uint32_t) call->params->ace_budget_poses)
+                else if (call->ace_evaluations >= call->budget_end)
                 {
                     rest = NAV_REASON_BUDGET;
                 }
@@ -777,6 +780,23 @@ static void show_path(const call_t *call, nav_tree_t *tree, nav_select_arc_out_t
     tree->kept = rest_of_path(call, &path, &out->arc);
 }
 
+/** Makes the paths that ACE refused untested again, for the leave limits. */
+static void forget_tests(const call_t *call, nav_tree_t *tree, nav_select_arc_out_t *out)
+{
+    clear_verdicts(tree);
+    for (uint32_t path = 0U; path < call->candidate_count; path++)
+    {
+        if (tree->path_cost_s[path] < NAV_COST_INFINITE)
+        {
+            tree->path_reason[path] = (uint8_t) NAV_REASON_NONE;
+        }
+    }
+    for (uint32_t reason = 0U; reason < (uint32_t) NAV_REASON_COUNT; reason++)
+    {
+        out->rejections[reason] = 0U;
+    }
+}
+
 void nav_tree_select(nav_tree_t *tree,
                      const nav_tree_scene_t *scene,
                      const nav_select_arc_in_t *in,
@@ -791,12 +811,23 @@ void nav_tree_select(nav_tree_t *tree,
     call.use_zone_cost = call.use_terrain_cost || (in->mode == (uint32_t) NAV_MODE_AVOID_KOZ);
     call.test_terrain = call.use_terrain_cost || (in->mode == (uint32_t) NAV_MODE_GUARDED);
 
+    call.budget_end = (uint32_t) call.params->ace_budget_poses;
+
     out->path_index = (uint32_t) NAV_TREE_CANDIDATES;
     clear_verdicts(tree);
     rank(&call, tree);
     rank_kept(&call, tree);
     sort_paths(tree, is_kept_sorted(&call, tree) ? call.candidate_count : PATHS);
     test_paths(&call, tree, out);
+    if ((out->path_index == (uint32_t) NAV_TREE_CANDIDATES) && call.test_terrain &&
+        !is_one_path(&call))
+    {
+        call.is_leaving = true;
+        call.budget_end += call.ace_evaluations;
+        forget_tests(&call, tree, out);
+        test_paths(&call, tree, out);
+        out->is_leaving = (out->path_index < (uint32_t) NAV_TREE_CANDIDATES) ? 1U : 0U;
+    }
     out->ace_evaluations = call.ace_evaluations;
     out->status = (uint32_t) NAV_NO_PATH;
     if (out->path_index < (uint32_t) NAV_TREE_CANDIDATES)

@@ -152,4 +152,68 @@ TEST(Ground, there_is_no_place_off_the_costmap_or_where_no_plane_was_fitted)
     EXPECT_FALSE(nav_ground_place(&ground, &scene.ctx->surface, &scene.ctx->costmap, &unknown));
 }
 
+TEST(Ground, any_unknown_corner_makes_the_height_between_four_cells_unknown)
+{
+    for (int corner = 0; corner < 4; corner++)
+    {
+        const double x_hidden = 0.15 + 0.1 * (corner / 2);
+        const double y_hidden = 0.15 + 0.1 * (corner % 2);
+        Scene scene([](nav_params_t &params) { params.surface_fill_neighbors = 9.0; });
+        scene.show(flat,
+                   [=](double x, double y) {
+                       return (std::hypot(x - x_hidden, y - y_hidden) < 0.01) ? 1.0 : 0.0;
+                   });
+        const nav_ground_t ground = placed(scene, 0.0, 0.0, 0.0);
+        EXPECT_LT(nav_ground_eta_m(&ground, 0.2, 0.2), -0.5 * NAV_ETA_NONE) << corner;
+        EXPECT_NEAR(0.0, nav_ground_eta_m(&ground, 0.4, 0.2), 1e-6) << corner;
+    }
+}
+
+TEST(Ground, beyond_every_edge_of_the_map_the_height_is_unknown)
+{
+    Scene scene;
+    scene.show(flat);
+    const nav_ground_t ground = placed(scene, 0.0, 0.0, 0.0);
+    for (double far_m : {15.0, 30.0})
+    {
+        EXPECT_LT(nav_ground_eta_m(&ground, far_m, 0.0), -0.5 * NAV_ETA_NONE);
+        EXPECT_LT(nav_ground_eta_m(&ground, -far_m, 0.0), -0.5 * NAV_ETA_NONE);
+        EXPECT_LT(nav_ground_eta_m(&ground, 0.0, far_m), -0.5 * NAV_ETA_NONE);
+        EXPECT_LT(nav_ground_eta_m(&ground, 0.0, -far_m), -0.5 * NAV_ETA_NONE);
+    }
+    EXPECT_NEAR(0.0, nav_ground_eta_m(&ground, 14.8, -14.8), 1e-6);
+}
+
+TEST(Ground, a_row_beside_the_box_holds_no_columns_on_any_heading)
+{
+    Scene scene;
+    scene.show(flat);
+    const nav_box_t box = {0.0, 0.0, 0.5, 0.3};
+    for (double yaw : {0.0, 0.4, 1.5707963267948966})
+    {
+        const nav_ground_t ground = placed(scene, 0.05, 0.05, yaw);
+        for (int32_t row : {120, 180})
+        {
+            uint32_t outside = 0;
+            const nav_columns_t cols = nav_ground_columns(&ground, &box, row, &outside);
+            EXPECT_LT(cols.last, cols.first) << yaw;
+            EXPECT_EQ(0U, outside) << yaw;
+        }
+    }
+}
+
+TEST(Ground, a_line_gives_no_more_crossings_than_there_is_room_for)
+{
+    Scene scene;
+    scene.show(flat);
+    const nav_ground_t ground = placed(scene, 0.0, 0.0, 0.0);
+    nav_crossings_t crossings;
+    nav_ground_crossings(&ground, NAV_GROUND_ROWS, 0.0, 0.0, 10.0, &crossings);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_CROSSINGS_MAX), crossings.count);
+    nav_ground_crossings(&ground, NAV_GROUND_ROWS, 0.0, 0.0, 1.0, &crossings);
+    EXPECT_EQ(20U, crossings.count);
+    nav_ground_crossings(&ground, NAV_GROUND_COLUMNS, 0.0, 0.0, 1.0, &crossings);
+    EXPECT_EQ(0U, crossings.count);
+}
+
 } // namespace

@@ -156,6 +156,73 @@ TEST(Tree, failures_of_ace_close_costmap_cells)
     EXPECT_GT(closed, 0U);
 }
 
+/* a rover that slipped to where no path passes gets away from there */
+
+/// Stones of 38 cm against both middle wheels, which a turn in place does not move.
+double stones_at_the_middle(double x, double y)
+{
+    return is_rock(x, std::fabs(y), 0.0, 1.47, 0.17) ? 0.38 : 0.0;
+}
+
+TEST(Tree, a_rover_without_a_path_leaves_within_the_leave_limits)
+{
+    Scene scene;
+    scene.show(stones_at_the_middle);
+    const auto out = scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_EQ(1U, out->is_leaving);
+    EXPECT_GT(out->bounds.wheel_drop_max_m, scene.ctx->params.wheel_drop_max_m);
+    EXPECT_LE(out->bounds.wheel_drop_max_m, scene.ctx->params.leave_wheel_drop_max_m);
+    EXPECT_EQ(0U, scene.evaluate(out->arc.length_m, out->arc.heading_change_rad)->is_safe);
+    nav_evaluate_arc_in_t in = {};
+    auto verdict = std::make_unique<nav_evaluate_arc_out_t>();
+    in.time_s = scene.time_s;
+    in.arc = out->arc;
+    in.mode = NAV_MODE_AVOID_ALL;
+    in.is_leaving = 1;
+    ASSERT_EQ(NAV_OK, nav_evaluate_arc(scene.ctx.get(), &in, verdict.get()));
+    EXPECT_EQ(1U, verdict->is_safe);
+}
+
+TEST(Tree, beyond_the_leave_limits_there_is_no_leaving)
+{
+    Scene scene([](nav_params_t &params) { params.leave_wheel_drop_max_m = 0.36; });
+    scene.show(stones_at_the_middle);
+    EXPECT_EQ(0U, scene.select(NAV_MODE_AVOID_ALL, NAV_NO_PATH)->is_leaving);
+}
+
+TEST(Tree, where_a_path_passes_the_leave_limits_are_not_used)
+{
+    Scene scene;
+    scene.show(flat);
+    EXPECT_EQ(0U, scene.select(NAV_MODE_AVOID_ALL)->is_leaving);
+}
+
+TEST(Tree, the_rest_of_a_path_is_driven_where_the_tree_holds_no_other)
+{
+    Scene scene;
+    scene.show(flat);
+    scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_EQ(1U, scene.ctx->tree.kept.is_kept);
+    EXPECT_DOUBLE_EQ(2.0, scene.ctx->tree.kept.first.length_m);
+    /* driven: the rest begins where it was expected, and is the cheapest way to go on straight */
+    nav_select_arc_in_t in = {};
+    auto out = std::make_unique<nav_select_arc_out_t>();
+    in.time_s = scene.time_s;
+    in.goal = scene.goal;
+    in.mode = NAV_MODE_AVOID_ALL;
+    in.pose.x_site_m = 1.0;
+    ASSERT_EQ(NAV_OK, nav_select_arc(scene.ctx.get(), &in, out.get()));
+    EXPECT_DOUBLE_EQ(1.0, out->arc.length_m);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_CANDIDATES),
+              std::accumulate(out->rejections, out->rejections + NAV_REASON_COUNT, 0U));
+    /* elsewhere it is of no use */
+    in.pose.x_site_m = 0.0;
+    in.pose.y_site_m = 3.0;
+    ASSERT_EQ(NAV_OK, nav_select_arc(scene.ctx.get(), &in, out.get()));
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_PATHS),
+              std::accumulate(out->rejections, out->rejections + NAV_REASON_COUNT, 0U));
+}
+
 /* the four modes of SIM, on one scene: a zone and a rock on the straight line */
 
 class Modes : public ::testing::Test
