@@ -6,6 +6,12 @@ SHELL := /bin/bash
 MAKEFLAGS += --no-print-directory --no-builtin-rules
 
 JOBS ?= 2
+# of every source of Navlib, by its C tests alone
+LEAST_LINE_PERCENT ?= 100
+LEAST_BRANCH_PERCENT ?= 98
+# of the bulk check of ACE
+POSES ?= 1000000
+SEARCH_S ?= 300
 BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 export PYTHONDONTWRITEBYTECODE :=
@@ -62,7 +68,7 @@ drive: $(SETUP) ## set up and run the demonstration drive
 	@$(BIN)/enav drive --force
 
 .PHONY: test
-test: test-c style test-python ## set up and run all tests: C under ASan and UBSan, style, Python
+test: test-c style misra test-python ## set up and run all tests: C under sanitizers, MISRA, style, Python
 
 .PHONY: test-c
 test-c: $(SETUP) ## the C tests under the address and undefined-behaviour sanitizers
@@ -100,10 +106,17 @@ coverage: $(SETUP) ## coverage of Navlib by its C tests alone: build/coverage/re
 	@mkdir -p build/coverage/report
 	@gcovr --root . --object-directory build/coverage --filter navlib_c/src/ --txt \
 	    --html-details build/coverage/report/index.html --json-summary build/coverage/summary.json
-	@$(BIN)/python .ci/coverage_gate.py build/coverage/summary.json
+	@$(BIN)/python .ci/coverage_gate.py build/coverage/summary.json \
+	    --least-line-percent $(LEAST_LINE_PERCENT) --least-branch-percent $(LEAST_BRANCH_PERCENT)
 
 .PHONY: verify
-verify: test lint coverage ## everything that is checked
+verify: test lint coverage ace-guarantee ## everything that is checked, and ACE against a million poses
+
+.PHONY: ace-guarantee
+ace-guarantee: $(SETUP) ## settle a million random poses, and search for ground that breaks ACE's bounds
+	@mkdir -p build
+	@$(BIN)/python -m pyharness.tests.verify_ace --poses $(POSES) --workers $(JOBS)
+	@$(BIN)/python -m pyharness.tests.search_ace --seconds $(SEARCH_S) --workers $(JOBS)
 
 .PHONY: format
 format: $(SETUP) ## format C and Python

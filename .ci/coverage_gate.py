@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Check gcovr's summary: every source of Navlib is in it, and lines are covered as demanded.
+"""Check gcovr's summary: every source of Navlib is in it, each covered as demanded.
 
 gcovr is content when its filter matches nothing, so the files are counted here. A source that holds
 only tables has nothing to measure; its object file says so.
@@ -25,7 +25,7 @@ def has_code(folder: Path, source: str) -> bool:
     return any(line.split()[1:2] in (["T"], ["t"]) for line in listing.stdout.splitlines())
 
 
-def problems(summary: dict, sources: list[str], least_line_percent: float) -> list[str]:
+def problems(summary: dict, sources: list[str], least_percent: dict[str, float]) -> list[str]:
     """Return one sentence for everything that is wrong."""
     measured = {file["filename"]: file for file in summary["files"]}
     found = [f"{name}: not measured" for name in sources if name not in measured]
@@ -33,11 +33,13 @@ def problems(summary: dict, sources: list[str], least_line_percent: float) -> li
         found.append("navlib_c/src has no sources")
     for name in sources:
         file = measured.get(name)
-        if file and file["line_total"] and file["line_percent"] < least_line_percent:
-            found.append(
-                f"{name}: {file['line_covered']} of {file['line_total']} lines covered, "
-                f"{least_line_percent:g} % demanded"
-            )
+        for kind, least in least_percent.items():
+            if not file or not file[f"{kind}_total"]:
+                continue
+            covered, total = file[f"{kind}_covered"], file[f"{kind}_total"]
+            if 100.0 * covered < least * total:
+                plural = {"line": "lines", "branch": "branches"}[kind]
+                found.append(f"{name}: {covered} of {total} {plural} covered, {least:g} % demanded")
     return found
 
 
@@ -46,12 +48,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("summary", type=Path)
     parser.add_argument("--least-line-percent", type=float, default=0.0)
+    parser.add_argument("--least-branch-percent", type=float, default=0.0)
     options = parser.parse_args()
     summary = json.loads(options.summary.read_text())
     folder = ROOT / "navlib_c" / "src"
     names = [str(path.relative_to(ROOT)) for path in sorted(folder.glob("*.c"))]
     sources = [name for name in names if has_code(options.summary.parent, name)]
-    found = problems(summary, sources, options.least_line_percent)
+    least = {"line": options.least_line_percent, "branch": options.least_branch_percent}
+    found = problems(summary, sources, least)
     if found:
         sys.exit("\n".join(f"coverage: {sentence}" for sentence in found))
     print(

@@ -6,12 +6,14 @@ measured in the same run; the ratio is value / reference.
 """
 
 import json
+import math
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +35,7 @@ from pyharness.scenario import (
     make_terrain,
     navlib_params,
 )
+from sim.camera import CameraConfig, camera_pair
 from sim.frames import rotation
 from sim.raycast import RayCaster
 from sim.settle import Settler
@@ -42,6 +45,8 @@ from sim.world import World
 
 REPEATS = 7
 POINTS = 250_000
+STEP_M = 0.042 / 8  # the fastest wheel in one tick
+RANGE_MAX_M = 25.0
 GOAL = Waypoint(40.0, 0.0, 2.0, "avoid_all")
 CERTAIN = Uncertainty(0.03, 0.005, 0.1)
 OUTPUT = Path("build/bench.json")
@@ -228,15 +233,31 @@ def bench_select_arc(bench: Bench) -> Result:
 
 
 def bench_settle_warm(bench: Bench) -> Result:
-    """Settle the rover from a pose near by; the reference solves the linkage on given heights."""
+    """Settle along a curved 20 m drive at 8 Hz; the reference solves the linkage alone."""
     settler = Settler(bench.terrain, bench.vehicle)
-    guess = settler.settle(0.0, 0.0, 0.0)
+    along_m = np.arange(0.0, 20.0, STEP_M)
+    yaw_rad = 0.1 * along_m
+    poses = np.column_stack(
+        [
+            np.cumsum(np.cos(yaw_rad)) * STEP_M - 5.0,
+            np.cumsum(np.sin(yaw_rad)) * STEP_M,
+            yaw_rad,
+        ]
+    )
+    value_s = best_of(lambda: settler.settle_many(poses, chained=True))
+    return compared("settle_warm", 1e6 * value_s / len(poses), "us", "scipy root", _root_us(bench))
 
-    def settle() -> None:
-        for _ in range(1000):
-            settler.settle(0.01, 0.0, 0.0, guess)
 
-    return compared("settle_warm", 1e3 * best_of(settle), "us", "scipy root", _root_us(bench))
+def bench_world_step(bench: Bench) -> Result:
+    """Advance the whole world by a tick: motion, slip, settling, odometry, in Python."""
+    world = World(bench.terrain, bench.vehicle, start=(-40.0, 0.0, 0.0))
+
+    def metre() -> None:
+        world.start_arc(1.0, 0.1)
+        for _ in range(190):
+            world.step()
+
+    return Result("world_step", 1e6 * best_of(metre) / 190, "us")
 
 
 def _root_us(bench: Bench) -> float:
@@ -265,35 +286,51 @@ def _root_us(bench: Bench) -> float:
     return 1e4 * best_of(solve)
 
 
-def bench_raycast(bench: Bench) -> Result:
-    """Cast the rays of one cloud; the reference marches them in numpy."""
+def bench_raycast(bench: Bench) -> Iterator[Result]:
+    """Cast the rays of two sizes of cloud; the reference does it with Open3D, or marches them."""
     caster = RayCaster(bench.terrain)
-    azimuth_rad, depression_rad = np.meshgrid(
-        np.linspace(-0.8, 0.8, 320), np.linspace(0.1, 0.9, 240)
-    )
-    directions = np.stack(
-        [
-            np.cos(depression_rad) * np.cos(azimuth_rad),
-            np.cos(depression_rad) * np.sin(azimuth_rad),
-            np.sin(depression_rad),
-        ],
-        axis=-1,
-    ).reshape(-1, 3)
-    z_m = float(bench.terrain.height_at(0.0, 0.0))
-    origin_m = np.array([0.0, 0.0, z_m - 2.0])
-    attitude = rotation(0.0, 0.0, 0.0)
+    left, _ = camera_pair(CameraConfig())
+    attitude = rotation(0.02, math.radians(-30.0), 0.3)
+    origin_m = np.array([0.0, 0.0, float(bench.terrain.height_at(0.0, 0.0)) - 2.0])
+    for name, width_px, height_px in (("raycast", 640, 480), ("raycast_320x240", 320, 240)):
+        rays = left.directions(width_px, height_px)
+        value_s = best_of(partial(caster.ranges_m, origin_m, rays, RANGE_MAX_M, attitude))
+        reference, reference_ms = _rays_ms(bench.terrain, origin_m, rays @ attitude.T)
+        yield compared(name, 1e3 * value_s, "ms", reference, reference_ms)
+    build_s = best_of(lambda: RayCaster(bench.terrain))
+    yield Result("raycast_build", 1e3 * build_s, "ms")
 
-    def march() -> None:
-        alive, distance_m = directions, 0.3
-        while len(alive) and distance_m < 25.0:
-            points_m = origin_m + distance_m * alive
-            alive = alive[points_m[:, 2] < bench.terrain.height_at(points_m[:, 0], points_m[:, 1])]
-            distance_m += 0.1
 
-    def cast() -> None:
-        caster.ranges_m(origin_m, directions, 25.0, attitude)
+def _rays_ms(
+    terrain: Terrain, origin_m: npt.NDArray[np.float64], rays: npt.NDArray[np.float64]
+) -> tuple[str, float]:
+    """Name and time of the reference."""
+    try:
+        import open3d  # type: ignore[import-not-found,unused-ignore]
+    except ImportError:
+        return "numpy marcher", 1e3 * best_of(partial(_march, terrain, origin_m, rays), 2)
+    scene = open3d.t.geometry.RaycastingScene(nthreads=1)
+    north, east = np.meshgrid(terrain.north_m, terrain.east_m, indexing="ij")
+    nodes = np.stack([north, east, terrain.z_site_m], axis=-1).reshape(-1, 3).astype(np.float32)
+    corner = np.arange(nodes.shape[0], dtype=np.uint32).reshape(north.shape)
+    a, b, c, d = (part.ravel() for part in (corner[:-1, :-1], corner[:-1, 1:], corner[1:, :-1],
+                                            corner[1:, 1:]))  # fmt: skip
+    triangles = np.concatenate([np.stack([a, b, c], 1), np.stack([b, d, c], 1)])
+    scene.add_triangles(open3d.core.Tensor(nodes), open3d.core.Tensor(triangles))
+    both = np.concatenate([np.broadcast_to(origin_m, rays.shape), rays], axis=1)
+    tensor = open3d.core.Tensor(both.astype(np.float32))
+    return "Open3D", 1e3 * best_of(lambda: scene.cast_rays(tensor, nthreads=1))
 
-    return compared("raycast", 1e3 * best_of(cast), "ms", "numpy marcher", 1e3 * best_of(march, 2))
+
+def _march(
+    terrain: Terrain, origin_m: npt.NDArray[np.float64], rays: npt.NDArray[np.float64]
+) -> None:
+    """Walk all rays in steps of a cell until they are under the ground."""
+    alive, distance_m = rays, 0.3
+    while len(alive) and distance_m < RANGE_MAX_M:
+        points_m = origin_m + distance_m * alive
+        alive = alive[points_m[:, 2] < terrain.height_at(points_m[:, 0], points_m[:, 1])]
+        distance_m += terrain.resolution_m
 
 
 def bench_drive_80m(bench: Bench) -> Iterator[Result]:
@@ -308,6 +345,27 @@ def bench_drive_80m(bench: Bench) -> Iterator[Result]:
     yield Result("drive_80m_speed", float(history.truth["time_s"][-1]) / value_s, "rover s / s")
 
 
+def bench_drive_memory() -> Result:
+    """Run the demonstration drive in a process of its own and look at its greatest size."""
+    code = (
+        "import resource; from pyharness import bench; bench.demonstration_drive();"
+        " print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+    )
+    answer = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True, text=True
+    )
+    return Result("drive_memory", int(answer.stdout) / 1024.0, "MiB")
+
+
+def demonstration_drive() -> None:
+    """Drive it with all records kept in memory."""
+    from pyharness.dp import native_schema
+
+    scenario = load_scenario(None, {})
+    history = History(native_schema(), drive_info(scenario))
+    drive(scenario, make_terrain(scenario), Enav, RecordStream([history.take]))
+
+
 def main() -> None:
     """Measure everything, print a table, write the file."""
     scenario = load_scenario(None, {})
@@ -320,8 +378,10 @@ def main() -> None:
         bench_dijkstra(bench),
         bench_select_arc(bench),
         bench_settle_warm(bench),
-        bench_raycast(bench),
+        bench_world_step(bench),
+        *bench_raycast(bench),
         *bench_drive_80m(bench),
+        bench_drive_memory(),
     ]
     OUTPUT.parent.mkdir(exist_ok=True)
     rows = [asdict(result) for result in results]

@@ -18,8 +18,9 @@ from sim.raster import MapGrid
 from sim.rocks import CFA_MAX
 from sim.terrain_io import open_map
 
-# nodes read beyond the patch on either side, where there are any: the spline's ends stay outside
-MARGIN_NODES = 4
+# nodes read beyond the patch on either side, where there are any: the spline's ends stay outside;
+# the second where no-data is near the patch
+MARGINS_NODES = (4, 1)
 
 Grid = npt.NDArray[np.float64]
 
@@ -103,7 +104,7 @@ def base_z_m(base: BaseFile, axis_m: Grid) -> tuple[Grid, float]:
     """
     patch = patch_of(base)
     path, half_m = patch.source.path, float(axis_m[-1])
-    axes, windows = [], []
+    axes = []
     for axis in (0, 1):
         axes.append(patch.axis_m(axis))
         middle_m = patch.middle_m[axis]
@@ -113,10 +114,12 @@ def base_z_m(base: BaseFile, axis_m: Grid) -> tuple[Grid, float]:
                 f"{path}: {2 * half_m:g} m around center {list(base.center_m)} is not"
                 f" inside the base of {size_m[0]:g} x {size_m[1]:g} m"
             )
-        windows.append(_window(axes[axis], middle_m, half_m, patch.cell_m[axis]))
-    rows, cols = windows
-    heights = -patch.source.read(rows, cols).astype(np.float32).astype(np.float64)
-    if not np.all(np.isfinite(heights)):
+    for margin in MARGINS_NODES:
+        rows, cols = (_window(axes[axis], patch, axis, half_m, margin) for axis in (0, 1))
+        heights = -patch.source.read(rows, cols).astype(np.float32).astype(np.float64)
+        if np.all(np.isfinite(heights)):
+            break
+    else:
         raise TerrainError(f"{path}: no-data nodes inside the wanted window, expected heights")
     degree = min(3, min(heights.shape) - 1)
     spline = RectBivariateSpline(axes[0][rows], axes[1][cols], heights, kx=degree, ky=degree)
@@ -127,10 +130,11 @@ def base_z_m(base: BaseFile, axis_m: Grid) -> tuple[Grid, float]:
     return z_m, -middle_z_m
 
 
-def _window(axis_m: Grid, middle_m: float, half_m: float, step_m: float) -> slice:
-    """Nodes of an axis within half_m of the middle, and a margin on either side."""
-    first = math.floor((middle_m - half_m - axis_m[0]) / step_m) - MARGIN_NODES
-    last = math.ceil((middle_m + half_m - axis_m[0]) / step_m) + MARGIN_NODES
+def _window(axis_m: Grid, patch: Patch, axis: int, half_m: float, margin: int) -> slice:
+    """Nodes of an axis within half_m of the middle of a patch, and a margin on either side."""
+    middle_m, step_m = patch.middle_m[axis], patch.cell_m[axis]
+    first = math.floor((middle_m - half_m - axis_m[0]) / step_m) - margin
+    last = math.ceil((middle_m + half_m - axis_m[0]) / step_m) + margin
     return slice(max(first, 0), min(last, len(axis_m) - 1) + 1)
 
 

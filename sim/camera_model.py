@@ -75,8 +75,8 @@ class Cahv:
 
     def directions(self, width_px: int, height_px: int) -> Array:
         """Unit vectors [rows * columns, 3] of the same view in another number of pixels."""
-        col = (np.arange(width_px) + 0.5) * (self.width_px / width_px) - 0.5
-        row = (np.arange(height_px) + 0.5) * (self.height_px / height_px) - 0.5
+        col = (np.arange(width_px, dtype=np.float64) + 0.5) * (self.width_px / width_px) - 0.5
+        row = (np.arange(height_px, dtype=np.float64) + 0.5) * (self.height_px / height_px) - 0.5
         rays = _cahv_rays(self.a, self.h, self.v, col[None, :, None], row[:, None, None])
         directions: Array = np.ascontiguousarray(rays.reshape(-1, 3))
         return directions

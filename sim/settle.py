@@ -122,8 +122,8 @@ class Settler:
         self.terrain = terrain
         self.vehicle = vehicle
         self._slope = ground_slope(terrain)
-        self._terrain_c = terrain_struct(terrain, self._slope)
-        self._vehicle_c = vehicle_struct(vehicle)
+        self.terrain_c = terrain_struct(terrain, self._slope)
+        self.vehicle_c = vehicle_struct(vehicle)
 
     def settle(
         self,
@@ -135,7 +135,7 @@ class Settler:
         """Settle at one pose; `guess`, a state near by, makes it faster and continuous."""
         pose = ffi.new("double[3]", (north_m, east_m, yaw_rad))
         out = ffi.new("sim_settled_t *")
-        lib.sim_settle(self._terrain_c, self._vehicle_c, pose, _guess_struct(guess), out)
+        lib.sim_settle(self.terrain_c, self.vehicle_c, pose, _guess_struct(guess), out)
         return _state_of(out)
 
     def settle_many(self, poses: npt.ArrayLike, chained: bool = False) -> npt.NDArray[np.void]:
@@ -146,8 +146,8 @@ class Settler:
         pose_array = np.ascontiguousarray(poses, dtype=np.float64).reshape(-1, 3)
         out = np.zeros(len(pose_array), dtype=SETTLED_DTYPE)
         lib.sim_settle_path(
-            self._terrain_c,
-            self._vehicle_c,
+            self.terrain_c,
+            self.vehicle_c,
             pointer(pose_array, "const double *"),
             len(pose_array),
             int(chained),
@@ -157,16 +157,15 @@ class Settler:
 
     def chain(self) -> "SettleChain":
         """For poses one after the other, each settled from the one before it."""
-        return SettleChain(self._terrain_c, self._vehicle_c)
+        return SettleChain(self)
 
 
 class SettleChain:
     """Settles along a drive, with as little as possible between Python and the kernel."""
 
-    def __init__(self, terrain_c: Any, vehicle_c: Any) -> None:
-        """Begin without a state to start from."""
-        self._terrain_c = terrain_c
-        self._vehicle_c = vehicle_c
+    def __init__(self, settler: Settler) -> None:
+        """Begin without a state to start from; the settler owns what its C views point to."""
+        self._settler = settler
         self._pose = ffi.new("double[3]")
         self._last, self._next = ffi.new("sim_settled_t *"), ffi.new("sim_settled_t *")
 
@@ -175,7 +174,8 @@ class SettleChain:
         pose = self._pose
         pose[0], pose[1], pose[2] = north_m, east_m, yaw_rad
         guess = self._last if self._last.on_map else ffi.NULL
-        lib.sim_settle(self._terrain_c, self._vehicle_c, pose, guess, self._next)
+        settler = self._settler
+        lib.sim_settle(settler.terrain_c, settler.vehicle_c, pose, guess, self._next)
         self._last, self._next = self._next, self._last
         return _fields_of(self._last)
 

@@ -104,7 +104,7 @@ class SlipModel:
         self._rng = rng
         # by number in a class map; what the map leaves open is configured
         self._tables = tuple(
-            load_slip_table(config.terrain_class if name == CLASS_NAMES[0] else name)  # type: ignore[arg-type]
+            load_slip_table(config.terrain_class if name == CLASS_NAMES[0] else name)
             for name in CLASS_NAMES
         )
         self._distance_m = 0.0

@@ -18,6 +18,8 @@ from sim.terrain import Terrain
 from sim.vehicle import Vehicle
 
 STEPS_PER_SECOND = 8
+# a wheel further from the ground than this is not settled: the pose is no truth any more
+UNSETTLED_M = 0.01
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -228,11 +230,25 @@ def _fraction(motion: _Motion, ticks: int) -> float:
     return elapsed_s / motion.duration_s
 
 
-def true_limit_violation(truth: SettledState, vehicle: Vehicle) -> str | None:
-    """The first fault limit that the true rover exceeds, with value and limit; None when safe.
+def off_map_reason(truth: SettledState, terrain: Terrain) -> str:
+    """Why a rover that is not `on_map` has no pose."""
+    if terrain.contains(truth.x_m, truth.y_m):
+        return "a wheel over the edge of the map or over a hole in the terrain"
+    return "over the edge of the map"
 
-    Off the map nothing is known and nothing is reported: watch `on_map`.
+
+def true_limit_violation(truth: SettledState, vehicle: Vehicle) -> str | None:
+    """The first fault of the true rover, with value and limit; None when safe.
+
+    Its limits, a pose that settling did not find, and ground that is not known where the limits
+    need it. Off the map nothing is known and nothing is reported: watch `on_map`.
     """
+    if not truth.on_map:
+        return None
+    if not truth.residual_m <= UNSETTLED_M:
+        return f"not settled: a wheel is {truth.residual_m:.3f} m off the ground, too steep here"
+    if not (math.isfinite(truth.clearance_m) and math.isfinite(truth.wheel_drop_m)):
+        return "no ground known under the rover: a hole in the terrain"
     limits = vehicle.fault_limits
     bogie_rad = max(abs(truth.bogie_left_rad), abs(truth.bogie_right_rad))
     for name, angle_rad, limit_deg in (

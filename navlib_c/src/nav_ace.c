@@ -335,7 +335,7 @@ static void line_interval(const double eta_m[SAMPLES_MAX],
             const uint32_t off = (k > disc_count) ? (k - disc_count) : (disc_count - k);
             standing_m = nav_max(standing_m, eta_m[(place + k) - disc_count] + reach_m[off]);
         }
-        if (standing_m > -0.5 * NAV_ETA_NONE)
+        if (standing_m > (-0.5 * NAV_ETA_NONE))
         {
             hub->low_m = nav_min(hub->low_m, standing_m);
             hub->high_m = nav_max(hub->high_m, standing_m);

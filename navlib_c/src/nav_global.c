@@ -213,7 +213,7 @@ static double distance_to_cell_m(const nav_costmap_t *map,
     return sqrt((dx * dx) + (dy * dy));
 }
 
-static double unknown_cost_s_per_m(const nav_params_t *params)
+static double unknown_ground_s_per_m(const nav_params_t *params)
 {
     return params->cost_unknown_factor / params->speed_max_m_per_s;
 }
@@ -321,7 +321,7 @@ static void seed_outside(nav_global_t *global,
         {
             const double way_m = distance_to_cell_m(map, cell, goal->x_site_m, goal->y_site_m);
 
-            lower(global, cell, way_m * unknown_cost_s_per_m(params));
+            lower(global, cell, way_m * unknown_ground_s_per_m(params));
         }
     }
 }
@@ -419,7 +419,7 @@ double nav_global_cost_to_go_s(const nav_global_t *global,
         const double dy = goal->y_site_m - y_site_m;
 
         cost_s =
-            nav_min(sqrt((dx * dx) + (dy * dy)) * unknown_cost_s_per_m(params), NAV_COST_INFINITE);
+            nav_min(sqrt((dx * dx) + (dy * dy)) * unknown_ground_s_per_m(params), NAV_COST_INFINITE);
     }
     else if (!is_blocked(global, cell))
     {

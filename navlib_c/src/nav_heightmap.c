@@ -175,7 +175,7 @@ static void unwrap(const nav_heightmap_t *map, double time_s, double expiry_s, f
     }
 }
 
-static void add_height(nav_column_t *column, float z_m)
+static void add_to_column(nav_column_t *column, float z_m)
 {
     if (z_m < NAV_SURFACE_UNKNOWN_M)
     {
@@ -197,12 +197,12 @@ static nav_column_t column_at(const float *z_site_m,
     {
         if ((row > 0) && (is_filled[col] == 0U))
         {
-            add_height(&column, z_site_m[index - NAV_SIZE]);
+            add_to_column(&column, z_site_m[index - NAV_SIZE]);
         }
-        add_height(&column, z_site_m[index]);
+        add_to_column(&column, z_site_m[index]);
         if ((row + 1) < NAV_SIZE)
         {
-            add_height(&column, z_site_m[index + NAV_SIZE]);
+            add_to_column(&column, z_site_m[index + NAV_SIZE]);
         }
     }
     return column;

@@ -264,4 +264,30 @@ TEST(Ace, growth_along_a_path_is_bounded)
     EXPECT_DOUBLE_EQ(0.2, nav_ace_grow(&params, &large, 3.0).yaw_rad);
 }
 
+TEST(Ace, a_belly_too_small_to_hold_a_cell_is_over_nothing_known)
+{
+    Scene scene(
+        [](nav_params_t &params)
+        {
+            params.belly_front_x_m = 0.001;
+            params.belly_rear_x_m = 0.0;
+            params.belly_half_width_m = 0.05;
+        });
+    scene.show(flat);
+    const nav_ace_bounds_t bounds = scene.ace(0.0, 0.0, 0.0);
+    EXPECT_DOUBLE_EQ(1.0, bounds.belly_unknown);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_REASON_UNKNOWN), bounds.reason);
+}
+
+TEST(Ace, yaw_uncertainty_widens_the_bound_of_tilt_on_a_slope_with_rocks)
+{
+    Scene scene;
+    scene.show([](double x, double y)
+               { return (0.25 * x) + block(x, y, 1.2, -1.0, 0.4, 0.3, 0.25); });
+    const double exact_rad = scene.ace(0.0, 0.0, 0.0).tilt_max_rad;
+    const double uncertain_rad = scene.ace(0.0, 0.0, 0.0, {0.0, 0.05, 0.0}).tilt_max_rad;
+    /* turning by 0.05 rad with the body leaning some 4 deg against the plane */
+    EXPECT_GT(uncertain_rad, exact_rad + (0.05 * 0.05));
+}
+
 } // namespace

@@ -159,10 +159,8 @@ TEST(Ground, any_unknown_corner_makes_the_height_between_four_cells_unknown)
         const double x_hidden = 0.15 + 0.1 * (corner / 2);
         const double y_hidden = 0.15 + 0.1 * (corner % 2);
         Scene scene([](nav_params_t &params) { params.surface_fill_neighbors = 9.0; });
-        scene.show(flat,
-                   [=](double x, double y) {
-                       return (std::hypot(x - x_hidden, y - y_hidden) < 0.01) ? 1.0 : 0.0;
-                   });
+        scene.show(flat, [=](double x, double y)
+                   { return (std::hypot(x - x_hidden, y - y_hidden) < 0.01) ? 1.0 : 0.0; });
         const nav_ground_t ground = placed(scene, 0.0, 0.0, 0.0);
         EXPECT_LT(nav_ground_eta_m(&ground, 0.2, 0.2), -0.5 * NAV_ETA_NONE) << corner;
         EXPECT_NEAR(0.0, nav_ground_eta_m(&ground, 0.4, 0.2), 1e-6) << corner;

@@ -55,7 +55,9 @@ def test_a_refusal_is_a_fault_with_its_text(thinker, planner, name):
         "process": lambda: thinker.process(image),
         "analyze": lambda: thinker.analyze(0.0, POSE, GOAL, 0.0),
         "select": lambda: thinker.select(0.0, POSE, CERTAIN, GOAL, Arc(0.0, 0.0)),
-        "evaluate": lambda: thinker.evaluate(0.0, POSE, CERTAIN, Arc(1.0, 0.0), "avoid_all"),
+        "evaluate": lambda: thinker.evaluate(
+            0.0, POSE, CERTAIN, Arc(1.0, 0.0), "avoid_all", is_leaving=False
+        ),
     }
     with pytest.raises(PlannerFaultError, match="only a defect can produce"):
         calls[name]()
@@ -89,3 +91,17 @@ def test_uncertainty_grows_with_what_is_still_to_be_driven(fake_world):
     assert far.position_m > near.position_m
     assert far.yaw_rad > near.yaw_rad
     assert near.global_position_m == pytest.approx(0.3)
+
+
+def test_an_arc_passed_by_the_leave_limits_is_evaluated_by_them(thinker, planner, monkeypatch):
+    asked = []
+    evaluate = planner._evaluate_arc
+
+    def spy(request):
+        asked.append(int(request["is_leaving"]))
+        return evaluate(request)
+
+    monkeypatch.setattr(planner, "_evaluate_arc", spy)
+    for is_leaving in (False, True):
+        thinker.evaluate(0.0, POSE, CERTAIN, Arc(1.0, 0.0), "avoid_all", is_leaving)
+    assert asked == [0, 1]

@@ -41,7 +41,7 @@ def test_a_true_scale_patch_needs_more_pixels_across(tmp_path: Path) -> None:
     path = at_latitude(tmp_path / "m.tif", 60.0, EASTWARD)
     base = BaseFile(file=str(path), true_scale=True)
     axis = np.linspace(-60.0, 60.0, 101)
-    with pytest.raises(TerrainError, match="not inside the base of 199 x 99.5"):
+    with pytest.raises(TerrainError, match=r"not inside the base of 199 x 99\.5"):
         base_z_m(base, axis)
     assert base_z_m(base, 0.8 * axis)[0].shape == (101, 101)
 
@@ -73,7 +73,7 @@ def test_holes_inside_and_patches_over_the_edge_are_refused(tmp_path: Path) -> N
     with pytest.raises(TerrainError, match="not inside the base"):
         generate(TerrainRecipe(size_m=250, base_file=str(path)))
     # the spline's margin would reach the hole, the patch does not
-    assert generate(TerrainRecipe(size_m=30, base_file=str(path), base_center_m=(40, 40)))
+    assert generate(TerrainRecipe(size_m=30, base_file=str(path), base_center_m=(17, 0)))
 
 
 def test_rocks_follow_a_map_of_cfa(tmp_path: Path) -> None:

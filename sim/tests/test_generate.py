@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Terrains from recipes."""
 
+import hashlib
 import math
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import pytest
 from pydantic import ValidationError
 
 from sim.errors import TerrainError
-from sim.generate import TerrainRecipe, generate, recipe_of
+from sim.generate import TerrainRecipe, generate, generate_layers, recipe_of
 from sim.landforms import Landform
 from sim.rocks import area_fraction
 from sim.terrain import centred
@@ -160,6 +161,14 @@ def test_a_real_dem_as_base(data_dir: Path) -> None:
         {"rock_diameter_min_m": 0},
         {"rock_diameter_min_m": 1, "rock_diameter_max_m": 1},
         {"base_file": "x", "bases": ({"file": "y"},)},
+        {"landform": {"kind": "crater"}, "landforms": ({"kind": "cliff"},)},
+        {"cfa": 0.1, "cfa_file": "c.tif"},
+        {"cfa": 0.41},
+        {"base_center_m": (1.0, 0.0)},
+        {"base_scale": 2.0},
+        {"base_true_scale": True},
+        {"start_m": (61.0, 0.0)},
+        {"undulation": ({"height_span_m": 1},)},
         {"undulation": ({"horizontal_scale_m": 0, "height_span_m": 1},)},
     ],
 )
@@ -177,3 +186,78 @@ def test_several_undulations_add_up() -> None:
     first = generate(TerrainRecipe(size_m=20, undulation=layers[:1]))
     rest = both.z_site_m - first.z_site_m
     assert 4 * rest.std() == pytest.approx(0.1, rel=1e-3)
+
+
+def test_layers_add_up_to_the_terrain() -> None:
+    layers = generate_layers(
+        TerrainRecipe(size_m=30, slope_deg=10, cfa=0.1, landform=Landform(kind="valley"), seed=3)
+    )
+    np.testing.assert_allclose(
+        layers.ground, layers.base + layers.undulation + layers.slope, atol=1e-12
+    )
+    z = layers.terrain.z_site_m
+    assert (z <= layers.ground.astype(np.float32)).all()
+    assert 0.03 < (z < layers.ground - 0.01).mean() < 0.12
+
+
+def test_landforms_combine_in_their_order() -> None:
+    crater = Landform(kind="crater", height_m=2, width_m=8)
+    cliff = Landform(kind="cliff", height_m=1.5, combine="higher")
+    pile = Landform(kind="rock_pile", center_m=(6.0, 6.0))
+    alone = [
+        generate(TerrainRecipe(size_m=30, landform=form, undulation=())).z_site_m
+        for form in (crater, cliff)
+    ]
+    both = TerrainRecipe(size_m=30, landforms=(crater, cliff), undulation=())
+    np.testing.assert_array_equal(generate(both).z_site_m, np.minimum(*alone))
+    lower = cliff.model_copy(update={"combine": "lower"})
+    both = TerrainRecipe(size_m=30, landforms=(crater, lower), undulation=())
+    np.testing.assert_array_equal(generate(both).z_site_m, np.maximum(*alone))
+    three = TerrainRecipe(size_m=30, landforms=(crater, cliff, pile), undulation=())
+    assert (generate(three).z_site_m <= np.minimum(*alone)).all()
+
+
+def test_bases_and_landforms_combine(tmp_path: Path) -> None:
+    axis = np.arange(61) - 30.0
+    path = tmp_path / "base.pgm"
+    write_terrain(centred(np.float32(0.1 * axis[:, None] + 0 * axis), 1.0), path)
+    crater = Landform(kind="crater")
+    one = {"file": str(path), "scale": 2.0}
+    two = {"file": str(path), "center_m": (4.0, 0.0), "scale": -1.0}
+    recipe = TerrainRecipe.model_validate({"size_m": 20, "bases": (one, two), "landform": crater})
+    layers = generate_layers(recipe)
+    alone = generate_layers(TerrainRecipe(size_m=20, landform=crater)).base
+    n = layers.terrain.north_m[:, None]
+    # heights are zero at the node beside the middle
+    np.testing.assert_allclose(layers.base, alone + 0.1 * (n - 0.05), atol=1e-3)
+    assert not layers.undulation.any()
+
+
+@pytest.mark.parametrize(("slope_deg", "azimuth_deg"), [(5, 30), (10, 123), (20, 300)])
+def test_the_fitted_plane_has_the_slope_to_a_hundredth_of_a_degree(
+    slope_deg: float, azimuth_deg: float
+) -> None:
+    terrain = generate(
+        TerrainRecipe(slope_deg=slope_deg, slope_azimuth_deg=azimuth_deg, undulation=())
+    )
+    n, e = np.meshgrid(terrain.north_m, terrain.east_m, indexing="ij")
+    sides = np.column_stack([n.ravel(), e.ravel(), np.ones(n.size)])
+    north, east, _ = np.linalg.lstsq(sides, -terrain.z_site_m.ravel().astype(float))[0]
+    assert math.degrees(math.atan(math.hypot(north, east))) == pytest.approx(slope_deg, abs=0.01)
+    assert math.degrees(math.atan2(east, north)) % 360 == pytest.approx(azimuth_deg, abs=0.01)
+
+
+def test_files_are_found_beside_a_recipe() -> None:
+    recipe = TerrainRecipe.model_validate(
+        {"bases": ({"file": "a.tif"}, {"file": "/d/b.tif"}), "cfa_file": "c.tif"}
+    )
+    found = recipe.with_files_in(Path("/f"))
+    assert [base.file for base in found.bases] == ["/f/a.tif", "/d/b.tif"]
+    assert found.cfa_file == "/f/c.tif"
+
+
+def test_default_recipes_keep_their_bytes() -> None:
+    """Seeds are in use: what they gave before must come again."""
+    terrain = generate(TerrainRecipe(size_m=40, cfa=0.15, slope_deg=20, seed=5))
+    digest = hashlib.sha256(terrain.rocks.tobytes()).hexdigest()
+    assert digest.startswith("6d3dda90c8c4d49b")

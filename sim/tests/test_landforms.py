@@ -58,3 +58,17 @@ def test_every_cell_of_a_maze_can_be_reached() -> None:
     free = made("maze", width_m=5.0)[26:-26, 26:-26] == 0
     assert 0.5 < free.mean() < 1.0
     assert label(free)[1] == 1
+
+
+@pytest.mark.parametrize("kind", typing.get_args(LandformKind))
+def test_a_landform_can_be_turned_and_moved(kind: LandformKind) -> None:
+    rng = [rng_for(1, "landform") for _ in range(2)]
+    plain = landform_up_m(Landform(kind=kind), AXIS, AXIS, rng[0])
+    turned = landform_up_m(Landform(kind=kind, azimuth_deg=90), AXIS, AXIS, rng[1])
+    # turned clockwise: what was in the north is in the east
+    np.testing.assert_allclose(turned, plain[:, ::-1].T, atol=1e-6)
+    moved = landform_up_m(
+        Landform(kind="crater", center_m=(5.0, -3.0)), AXIS, AXIS, rng_for(1, "landform")
+    )
+    row, col = np.unravel_index(np.argmin(moved), moved.shape)
+    assert (AXIS[row], AXIS[col]) == pytest.approx((5.0, -3.0), abs=0.1)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Settling: published linkage values, exact planes, symmetries, and an independent oracle."""
 
+import gc
 import math
 
 import numpy as np
@@ -315,3 +316,15 @@ def test_states_are_frozen(flat: Terrain, vehicle: Vehicle) -> None:
     state: SettledState = Settler(flat, vehicle).settle(0, 0, 0)
     with pytest.raises(AttributeError):
         state.z_m = 1.0  # type: ignore[misc]
+
+
+def test_a_chain_keeps_alive_what_it_settles_on(vehicle: Vehicle) -> None:
+    terrain = generate(TerrainRecipe(size_m=20, cfa=0.1, seed=4))
+    expected = Settler(terrain, vehicle).settle(1.0, 2.0, 0.3)
+    chain = Settler(terrain, vehicle).chain()
+    gc.collect()
+    # whatever takes the memory that was freed too early
+    fillers = [np.full((40, 40, 2), 9.0, dtype=np.float32) for _ in range(64)]
+    wheel_drop_m = SettledState(*chain.settle(1.0, 2.0, 0.3)).wheel_drop_m
+    assert len(fillers) == 64
+    assert wheel_drop_m == pytest.approx(expected.wheel_drop_m, abs=1e-9)
