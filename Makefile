@@ -84,7 +84,8 @@ style: $(SETUP) ## formatting, ruff and the import rules, in seconds
 	@ruff format --check --quiet
 	@$(call clang_format_check)
 	@$(call logged,lint-imports,lint-imports)
-	@echo "style: ruff, clang-format, import contracts ok"
+	@lizard -l c -C 10 -L 60 -a 6 -w navlib_c/src # complexity, lines, parameters of a function
+	@echo "style: ruff, clang-format, import contracts, shape of C ok"
 
 .PHONY: lint
 lint: style misra ## style, MISRA rules and types
@@ -117,6 +118,10 @@ ace-guarantee: $(SETUP) ## settle a million random poses, and search for ground 
 	@mkdir -p build
 	@$(BIN)/python -m pyharness.tests.verify_ace --poses $(POSES) --workers $(JOBS)
 	@$(BIN)/python -m pyharness.tests.search_ace --seconds $(SEARCH_S) --workers $(JOBS)
+
+.PHONY: docs
+docs: $(SETUP) ## write the pages of docs/ that are made from the C tables
+	@$(BIN)/python -m pyharness._build.make_docs
 
 .PHONY: format
 format: $(SETUP) ## format C and Python

@@ -35,6 +35,10 @@ def terrain() -> None:
 @click.option("--base", type=FILE, help="Terrain or DEM to start from.")
 @click.option("--base-center-m", type=Numbers("N,E"), help="Middle, from the middle of the base.")
 @click.option("--base-scale", type=float, help="Factor on the heights of the base.")
+@click.option(
+    "--base-true-scale", is_flag=True, default=None,
+    help="Correct the size of the base's pixels for the latitude.",
+)  # fmt: skip
 @click.option("--base-band", type=int, help="Band of a base with several, from 1.")
 @click.option(
     "--landform",

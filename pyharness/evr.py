@@ -19,6 +19,8 @@ class EvrDefinition:
     severity: str
     arg_count: int
     text: str
+    cause: str
+    args: str
 
 
 @functools.cache
@@ -31,6 +33,8 @@ def evr_table() -> Mapping[int, EvrDefinition]:
             severity=Severity(int(row.severity)).name,
             arg_count=int(row.arg_count),
             text=ffi.string(row.text).decode(),
+            cause=ffi.string(row.cause).decode(),
+            args=ffi.string(row.args).decode(),
         )
         for row in lib.nav_evr_defs
     )

@@ -28,7 +28,14 @@ def param_rows() -> list[Row]:
 def evr_rows() -> list[Row]:
     """Return one row per event report."""
     return [
-        {"id": row.evr_id, "name": row.name, "severity": row.severity, "text": row.text}
+        {
+            "id": row.evr_id,
+            "name": row.name,
+            "severity": row.severity,
+            "text": row.text,
+            "cause": row.cause,
+            "arguments": row.args,
+        }
         for row in evr_table().values()
     ]
 
@@ -45,6 +52,21 @@ def dp_rows() -> list[Row]:
             "meaning": row.doc,
         }
         for row in schema.kinds.values()
+    ]
+
+
+def field_rows() -> list[Row]:
+    """Return one row per field of the records that stand in data products."""
+    return [
+        {
+            "record": record.type,
+            "field": field.name,
+            "type": field.type if field.count == 1 else f"{field.type}[{field.count}]",
+            "unit": field.unit,
+            "meaning": field.doc,
+        }
+        for record in native_schema().records.values()
+        for field in record.fields
     ]
 
 

@@ -28,12 +28,12 @@ def make_orbital(config: OrbitalConfig, folder: Path, workers: int, on_done: Don
     The configuration is written with the landing points and regions that were drawn: run again
     from it, the same files come.
     """
+    config = with_absolute_files(config, Path())
+    plan = plan_orbital(config)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise TerrainError(f"{folder}: cannot be made: {error.strerror}") from None
-    config = with_absolute_files(config, Path())
-    plan = plan_orbital(config)
     path = folder / CONFIG_FILE
     if path.exists():
         same = load_model(path, OrbitalConfig).model_copy(update={"count": config.count})

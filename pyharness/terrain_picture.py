@@ -5,10 +5,12 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 import numpy.typing as npt
+from matplotlib import patheffects
 from matplotlib.axes import Axes
 from matplotlib.colors import (
     BoundaryNorm,
@@ -46,7 +48,7 @@ SLOPE_COLORS = LinearSegmentedColormap.from_list(
 HEIGHT_COLORS = LinearSegmentedColormap.from_list(
     "height", ["#4a2c2a", "#8a4b32", "#c07a4a", "#e0b384", "#f7ead7"]
 )
-ROCK_COLOR, PROFILE_COLOR, START_COLOR = "#0a63ff", "#00a37a", "#c2007a"
+ROCK_COLOR, PROFILE_COLOR, START_COLOR = "#0a63ff", "#00a37a", "#ffffff"
 CLASS_COLORS = ("#b9b9b9", "#7d5ba6", "#c98f5a", "#f0dc82")
 # heights at which a rock is a hazard to the belly pan, to a wheel, to the rocker (SIM Fig. 10)
 HAZARD_HEIGHTS_M = (0.25, 0.35, 0.46)
@@ -317,8 +319,12 @@ def _finish(
     lines: list[Patch | Line2D] = [*handles]
     start = _start_strip(shown)
     if start is not None:
-        axes.add_patch(Polygon(start, fill=False, edgecolor=START_COLOR, linewidth=1.3))
-        lines.append(Patch(fill=False, edgecolor=START_COLOR, label="strip cleared for the start"))
+        outlined: list[Any] = [patheffects.withStroke(linewidth=3.0, foreground="black")]
+        strip = Polygon(start, fill=False, edgecolor=START_COLOR, linewidth=1.4)
+        strip.set_path_effects(outlined)
+        axes.add_patch(strip)
+        label = "strip cleared for the start"
+        lines.append(Patch(fill=False, edgecolor=START_COLOR, label=label, path_effects=outlined))
     if profile is not None:
         (n0, e0), (n1, e1) = profile
         axes.plot([e0, e1], [n0, n1], "-", color=PROFILE_COLOR, linewidth=1.8)

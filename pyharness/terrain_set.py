@@ -32,13 +32,8 @@ class TerrainSet(ConfigModel):
         recipe: What all have in common.
     """
 
-    slopes_deg: Annotated[tuple[float, ...], Field(min_length=1)] = (0.0, 5.0, 10.0, 15.0, 20.0)
-    cfas: Annotated[tuple[Annotated[float, Field(ge=0, le=CFA_MAX)], ...], Field(min_length=1)] = (
-        0.07,
-        0.10,
-        0.12,
-        0.15,
-    )
+    slopes_deg: tuple[float, ...] = (0.0, 5.0, 10.0, 15.0, 20.0)
+    cfas: tuple[Annotated[float, Field(ge=0, le=CFA_MAX)], ...] = (0.07, 0.10, 0.12, 0.15)
     count: Annotated[int, Field(ge=1, le=COUNT_MAX)] = 1200
     first_seed: Annotated[int, Field(ge=0, le=SEED_MAX - COUNT_MAX)] = 0
     recipe: TerrainRecipe = TerrainRecipe()
@@ -46,6 +41,8 @@ class TerrainSet(ConfigModel):
     @model_validator(mode="after")
     def _check(self) -> Self:
         for name, values in (("slopes_deg", self.slopes_deg), ("cfas", self.cfas)):
+            if not values:
+                raise ValueError(f"{name}: expected at least one value")
             if len(set(values)) != len(values):
                 raise ValueError(f"{name}: a value is given twice")
         return self

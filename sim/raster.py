@@ -244,8 +244,12 @@ def geotiff(values: npt.NDArray[np.float32], place: MapPlace | None, names: list
 
     Without a place the coordinates are metres from the middle (`place.step` metres a pixel).
     """
-    import rasterio
-
+    try:
+        import rasterio
+    except ImportError:
+        raise TerrainError(
+            "writing a GeoTIFF needs rasterio, install it with: pip install 'enav-sim[orbital]'"
+        ) from None
     count, rows, cols = values.shape
     step = 1.0 if place is None else place.step
     west = -0.5 * cols if place is None else place.x_min - 0.5 * step

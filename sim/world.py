@@ -246,7 +246,8 @@ def true_limit_violation(truth: SettledState, vehicle: Vehicle) -> str | None:
     if not truth.on_map:
         return None
     if not truth.residual_m <= UNSETTLED_M:
-        return f"not settled: a wheel is {truth.residual_m:.3f} m off the ground, too steep here"
+        gap = f"a wheel is {truth.residual_m:.3f} m off the ground"
+        return f"not settled: {gap} (a cliff, or a hole beside it)"
     if not (math.isfinite(truth.clearance_m) and math.isfinite(truth.wheel_drop_m)):
         return "no ground known under the rover: a hole in the terrain"
     limits = vehicle.fault_limits

@@ -20,25 +20,47 @@ typedef enum
     NAV_EVR_FATAL = 5
 } nav_evr_severity_t;
 
-/** X(value, NAME, SEVERITY, argument count, "text with {} for each argument") */
+/** X(value, NAME, SEVERITY, argument count, "text with {} for each argument", "cause",
+ * "meaning of each argument, separated by semicolons") */
 #define NAV_EVR_TABLE(X)                                                                           \
-    X(1, INITIALIZED, ACTIVITY_HIGH, 1, "navlib initialized, {} parameters")                       \
-    X(2, CALL_REFUSED, WARNING_HIGH, 2, "call {} refused with status {}")                          \
-    X(3, PARAMETER_REFUSED, WARNING_HIGH, 2, "parameter {} refused, value {}")                     \
-    X(4, ZONES_SET, ACTIVITY_HIGH, 2, "{} keep-out and {} keep-in zones set")                      \
-    X(5, ZONE_REFUSED, WARNING_HIGH, 1, "zone {} refused")                                         \
-    X(6, CLOUD_MERGED, ACTIVITY_LOW, 3, "image {}: {} points merged, {} outside the map")          \
-    X(7, COSTMAP_RECENTERED, ACTIVITY_LOW, 2, "costmap recentred on north {} m, east {} m")        \
-    X(8, TERRAIN_ANALYZED, ACTIVITY_LOW, 2, "{} cells known, {} infinite")                         \
+    X(1, INITIALIZED, ACTIVITY_HIGH, 1, "navlib initialized, {} parameters",                       \
+      "nav_init took all parameters", "number of parameters")                                      \
+    X(2, CALL_REFUSED, WARNING_HIGH, 2, "call {} refused with status {}",                          \
+      "an input was not usable; nothing was changed",                                              \
+      "data product kind of the input; nav_status_t")                                              \
+    X(3, PARAMETER_REFUSED, WARNING_HIGH, 2, "parameter {} refused, value {}",                     \
+      "a parameter is out of range or contradicts another",                                        \
+      "index in the parameter table; its value, 0 when not finite")                                \
+    X(4, ZONES_SET, ACTIVITY_HIGH, 2, "{} keep-out and {} keep-in zones set",                      \
+      "nav_set_kioz replaced all zones", "number of keep-out zones; of keep-in zones")             \
+    X(5, ZONE_REFUSED, WARNING_HIGH, 1, "zone {} refused",                                         \
+      "a zone is degenerate, not finite or of unknown kind; the old zones stay",                   \
+      "index of the first such zone")                                                              \
+    X(6, CLOUD_MERGED, ACTIVITY_LOW, 3, "image {}: {} points merged, {} outside the map",          \
+      "a chunk of a point cloud was merged", "image number; points merged; points outside")        \
+    X(7, COSTMAP_RECENTERED, ACTIVITY_LOW, 2, "costmap recentred on north {} m, east {} m",        \
+      "the rover was near the edge of the costmap, or it was the first analysis",                  \
+      "new middle, m north; m east")                                                               \
+    X(8, TERRAIN_ANALYZED, ACTIVITY_LOW, 2, "{} cells known, {} infinite",                         \
+      "nav_analyze_terrain is done", "costmap cells with a plane; cells that cannot be crossed")   \
     X(9, ARC_SELECTED, ACTIVITY_HIGH, 4,                                                           \
-      "arc {} m, heading change {} rad, path cost {} s, {} ACE evaluations")                       \
-    X(10, NO_PATH, WARNING_HIGH, 3, "no path: {} paths, most rejected by reason {}, {} times")     \
-    X(11, BUDGET_USED, WARNING_LOW, 1, "evaluation budget of {} poses used up")                    \
-    X(12, ARC_UNSAFE, WARNING_HIGH, 3, "arc unsafe at {} m or rad along it, pose {}, reason {}")   \
-    X(13, PRODUCT_REFUSED, WARNING_LOW, 1, "the host refused data product {}")                     \
-    X(14, ASSERTION, WARNING_HIGH, 1, "assertion failed in module {}")
+      "arc {} m, heading change {} rad, path cost {} s, {} ACE evaluations",                       \
+      "nav_select_arc found a path",                                                               \
+      "arc length, m; heading change, rad; cost of the path, s; ACE poses evaluated")              \
+    X(10, NO_PATH, WARNING_HIGH, 3, "no path: {} paths, most rejected by reason {}, {} times",     \
+      "no candidate passed the checks of the mode",                                                \
+      "candidates; most frequent nav_reason_t, cost aside; how often")                             \
+    X(11, BUDGET_USED, WARNING_LOW, 1, "evaluation budget of {} poses used up",                    \
+      "ace_budget_poses was reached before a safe path was found", "ACE poses evaluated")          \
+    X(12, ARC_UNSAFE, WARNING_HIGH, 3, "arc unsafe at {} m or rad along it, pose {}, reason {}",   \
+      "nav_evaluate_arc found a pose that fails",                                                  \
+      "distance along the arc, m, or angle in a turn, rad; index of the pose; nav_reason_t")       \
+    X(13, PRODUCT_REFUSED, WARNING_LOW, 1, "the host refused data product {}",                     \
+      "nav_dp_send did not return NAV_OK; the call went on", "kind of the data product")           \
+    X(14, ASSERTION, WARNING_HIGH, 1, "assertion failed in module {}",                             \
+      "a state that only a defect or a changed memory can produce", "module")
 
-#define NAV_EVR_ROW(value, name, severity, count, text) NAV_EVR_##name = (value),
+#define NAV_EVR_ROW(value, name, severity, count, text, cause, args) NAV_EVR_##name = (value),
 typedef enum
 {
     NAV_EVR_TABLE(NAV_EVR_ROW) NAV_EVR_COUNT = 14
@@ -60,6 +82,8 @@ typedef struct
     uint32_t arg_count;
     const char *name;
     const char *text;
+    const char *cause;
+    const char *args; /* the meaning of each, separated by "; " */
 } nav_evr_def_t;
 
 /** One row per event, in the order of the table. */

@@ -127,6 +127,7 @@ typedef struct
     double spread_u[NAV_WHEELS];
     double spread_v[NAV_WHEELS];
     double spread_eta; /* loss of clearance per metre of |eta|, over all wheels */
+    nav_box_t box;     /* of the belly, grown, along the axes of the body */
     double lift_m;
     double cos_roll;
     double sin_roll;
@@ -230,8 +231,7 @@ static double wheel_swing_m(const nav_vehicle_t *vehicle, const range_t *range, 
 /** How far a wheel and its box, which stand along the heading, can be turned in the plane. */
 static double turn_of_box(const view_t *view, const range_t *range)
 {
-    return view->uncertainty.yaw_rad +
-           fabs(turn_of_pitch(view, range->middle[NAV_LINKAGE_PITCH])) +
+    return view->uncertainty.yaw_rad + fabs(turn_of_pitch(view, range->middle[NAV_LINKAGE_PITCH])) +
            fabs(turn_of_pitch(view, range->half[NAV_LINKAGE_PITCH]));
 }
 
@@ -608,10 +608,9 @@ static double belly_spread_m(const belly_t *belly, double u_m, double v_m)
 }
 
 /** Does a point, seen from the body, lie in the box along the body's axes? */
-static bool is_under_belly(const belly_t *belly,
-                           const nav_box_t *box,
-                           const nav_ground_point_t *point)
+static bool is_under_belly(const belly_t *belly, const nav_ground_point_t *point)
 {
+    const nav_box_t *box = &belly->box;
     const double up_m = point->eta_m - belly->lift_m;
     const double u_m = (belly->cos_pitch * point->u_m) + (belly->sin_pitch * up_m);
     const double v_m =
@@ -644,7 +643,6 @@ static void row_spread(const view_t *view,
 static double belly_row_m(const view_t *view,
                           const linkage_t *linkage,
                           const belly_t *belly,
-                          const nav_box_t *box,
                           int32_t row,
                           const nav_columns_t *cols,
                           uint32_t *unknown_count)
@@ -665,7 +663,7 @@ static double belly_row_m(const view_t *view,
             const double free_m =
                 (belly->at_0_m + (belly->per_u * point.u_m) + (belly->per_v * point.v_m)) -
                 (belly->per_eta * point.eta_m) - chord_m - (belly->spread_eta * fabs(point.eta_m));
-            if ((free_m < least_m) && is_under_belly(belly, box, &point))
+            if ((free_m < least_m) && is_under_belly(belly, &point))
             {
                 least_m = free_m;
             }
@@ -730,6 +728,7 @@ static void belly_bounds(const view_t *view,
     double least_m = NAV_ETA_NONE;
 
     belly_place(view, linkage, &belly);
+    belly.box = box;
     const double turn = fabs(turn_of_pitch(view, linkage->state[NAV_LINKAGE_PITCH]));
     wide.u_m = at.u_m;
     wide.v_m = at.v_m;
@@ -745,8 +744,8 @@ static void belly_bounds(const view_t *view,
         if (cols.last >= cols.first)
         {
             cell_count += (uint32_t) ((cols.last - cols.first) + 1);
-            least_m = nav_min(least_m,
-                              belly_row_m(view, linkage, &belly, &box, row, &cols, &unknown_count));
+            least_m =
+                nav_min(least_m, belly_row_m(view, linkage, &belly, row, &cols, &unknown_count));
         }
     }
     /* the belly may stand elsewhere in its box */
@@ -792,7 +791,9 @@ static bool is_bogie_beyond(const nav_ace_bounds_t *bounds, double limit_rad)
            is_beyond(bounds->bogie_right_min_rad, bounds->bogie_right_max_rad, limit_rad);
 }
 
-nav_reason_t nav_ace_refuse(const nav_params_t *params, const nav_ace_bounds_t *bounds, bool is_leaving)
+nav_reason_t nav_ace_refuse(const nav_params_t *params,
+                            const nav_ace_bounds_t *bounds,
+                            bool is_leaving)
 {
     const limits_t limits = limits_of(params, is_leaving);
     nav_reason_t reason = NAV_REASON_NONE;

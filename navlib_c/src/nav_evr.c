@@ -5,8 +5,8 @@
  */
 #include "nav_evr.h"
 
-#define NAV_EVR_DEF(value, name, severity, count, text)                                            \
-    {(value), NAV_EVR_##severity, (count), #name, (text)},
+#define NAV_EVR_DEF(value, name, severity, count, text, cause, args)                               \
+    {(value), NAV_EVR_##severity, (count), #name, (text), (cause), (args)},
 
 const nav_evr_def_t nav_evr_defs[NAV_EVR_COUNT] = {NAV_EVR_TABLE(NAV_EVR_DEF)};
 

@@ -418,8 +418,8 @@ double nav_global_cost_to_go_s(const nav_global_t *global,
         const double dx = goal->x_site_m - x_site_m;
         const double dy = goal->y_site_m - y_site_m;
 
-        cost_s =
-            nav_min(sqrt((dx * dx) + (dy * dy)) * unknown_ground_s_per_m(params), NAV_COST_INFINITE);
+        cost_s = nav_min(sqrt((dx * dx) + (dy * dy)) * unknown_ground_s_per_m(params),
+                         NAV_COST_INFINITE);
     }
     else if (!is_blocked(global, cell))
     {

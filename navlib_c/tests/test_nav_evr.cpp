@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstring>
 #include <string>
 
@@ -81,6 +82,17 @@ TEST(NavEvr, EveryTextHasABracePairForEachArgument)
         last_id = def.id;
     }
     EXPECT_EQ(last_id, static_cast<uint32_t>(NAV_EVR_COUNT));
+}
+
+TEST(NavEvr, EveryEventHasACauseAndAMeaningForEachArgument)
+{
+    for (const nav_evr_def_t &def : nav_evr_defs)
+    {
+        EXPECT_GT(std::string(def.cause).size(), 10U) << def.name;
+        const std::string args = def.args;
+        const auto separators = std::count(args.begin(), args.end(), ';');
+        EXPECT_EQ(separators + 1, static_cast<long>(def.arg_count)) << def.name;
+    }
 }
 
 TEST(NavEvr, AReportThatDoesNotFitIsCounted)

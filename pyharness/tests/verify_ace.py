@@ -34,7 +34,7 @@ SLOPES_DEG = (0.0, 5.0, 10.0, 15.0, 20.0, 25.0)
 POSITION_M = 0.10
 YAW_RAD = 0.05
 # file, half the width from which middles are drawn
-REAL_GROUND = (("marias_pass_025m.pgm", 38.0), ("gale_hirise_1m.pgm", 150.0))
+REAL_GROUND = (("marias_pass_025m.pgm", 38.0), ("gale_hirise_1m.pgm", 140.0))
 
 
 @dataclass

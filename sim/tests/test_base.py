@@ -19,7 +19,7 @@ from sim.tests.map_files import RADIUS_M, eqc, write_map
 rasterio = pytest.importorskip("rasterio")
 
 # an incline of 0.1 to the east, as pixels of 1 m in the projection have it
-EASTWARD = np.float32(np.tile(0.1 * np.arange(200.0), (200, 1)))
+EASTWARD = np.tile(0.1 * np.arange(200.0), (200, 1)).astype(np.float32)
 
 
 def at_latitude(path: Path, latitude_deg: float, values: np.ndarray, step: float = 1.0) -> Path:
@@ -40,7 +40,7 @@ def test_true_scale_makes_slopes_as_steep_as_they_are(tmp_path: Path) -> None:
 def test_a_true_scale_patch_needs_more_pixels_across(tmp_path: Path) -> None:
     path = at_latitude(tmp_path / "m.tif", 60.0, EASTWARD)
     base = BaseFile(file=str(path), true_scale=True)
-    axis = np.linspace(-60.0, 60.0, 101)
+    axis = np.linspace(-60.0, 60.0, 101).astype(np.float64)
     with pytest.raises(TerrainError, match=r"not inside the base of 199 x 99\.5"):
         base_z_m(base, axis)
     assert base_z_m(base, 0.8 * axis)[0].shape == (101, 101)
@@ -49,7 +49,7 @@ def test_a_true_scale_patch_needs_more_pixels_across(tmp_path: Path) -> None:
 def test_the_spline_runs_through_the_pixels_of_gale(data_dir: Path) -> None:
     source = open_map(data_dir / "gale_hirise_1m.tif")
     base = BaseFile(file=str(source.path), center_m=(37.0, -41.5), true_scale=True)
-    axis = (np.arange(1200) - 599.5) * 0.1
+    axis = (np.arange(1200, dtype=np.float64) - 599.5) * 0.1
     z_m, datum_up_m = base_z_m(base, axis)
     terrain = centred(z_m.astype(np.float32), 0.1)
     patch = place_patch(source, base.center_m, True)

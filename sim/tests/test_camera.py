@@ -282,3 +282,32 @@ def test_what_is_off_draws_nothing(flat: Terrain, vehicle: Vehicle) -> None:
 def test_bad_cameras_are_refused(text: str, fault: str) -> None:
     with pytest.raises(ConfigError, match=fault):
         parse_model(text, "camera.yaml", CameraConfig)
+
+
+def test_the_noise_of_a_million_points_has_the_sigma_of_the_equation(
+    flat: Terrain, vehicle: Vehicle
+) -> None:
+    """SIM equation (1) written out: d / sin(theta) from the triangle camera, camera, point."""
+    state = settled(flat, vehicle)
+    still = StereoCamera(flat, vehicle, clean(cloud_width_px=320, cloud_height_px=240))
+    noisy = StereoCamera(flat, vehicle, CameraConfig())
+    left, right = mast_views(vehicle, CameraConfig())
+    points = still.image(state, RNG(0)).astype(float)
+    to_left, to_right = left.c - points, right.c - points
+    ranges, d = np.linalg.norm(to_left, axis=1), np.linalg.norm(to_right, axis=1)
+    theta = np.arccos((to_left * to_right).sum(axis=1) / (ranges * d))
+    sigma = 0.32 / 1280 * left.fov_rad[0] * d / np.sin(theta)
+    count, total, square = 0, 0.0, 0.0
+    by_range = np.zeros((2, 30))
+    for seed in range(1 + 1_000_000 // len(points)):
+        moved = noisy.image(state, RNG(seed)).astype(float)
+        eta = ((points - moved) * to_left).sum(axis=1) / ranges / sigma
+        count, total, square = count + len(eta), total + eta.sum(), square + (eta**2).sum()
+        bins = ranges.astype(int)
+        by_range += [np.bincount(bins, minlength=30), np.bincount(bins, eta**2, minlength=30)]
+    assert count >= 1_000_000
+    assert math.sqrt(square / count) == pytest.approx(1.0, rel=0.01)
+    assert total / count == pytest.approx(0.0, abs=0.004)
+    full = by_range[0] > 20_000
+    assert full.sum() > 5
+    np.testing.assert_allclose(np.sqrt(by_range[1, full] / by_range[0, full]), 1.0, atol=0.025)

@@ -19,7 +19,7 @@ rasterio = pytest.importorskip("rasterio")
 
 N, E = np.meshgrid(np.arange(90.0)[::-1], np.arange(80.0), indexing="ij")
 # a ridge along north with a gap in the north
-RIDGE = np.float32(12 * np.exp(-(((E - 40) / 4) ** 2)) * (1 / (1 + np.exp((N - 70) / 2))))
+RIDGE = (12 * np.exp(-(((E - 40) / 4) ** 2)) * (1 / (1 + np.exp((N - 70) / 2)))).astype(np.float32)
 SMALL = {"size_m": 20.0, "start_m": None, "resolution_m": 0.5}
 
 
@@ -57,6 +57,7 @@ def test_where_a_patch_came_from_is_where_its_heights_are(tmp_path: Path) -> Non
             line, sample = dataset.index(origin["map_x"], origin["map_y"])
             assert (origin["pixel_line"], origin["pixel_sample"]) == (line, sample)
             layers = generate_layers(recipe)
+            assert layers.datum_up_m is not None
             middle_up_m = layers.datum_up_m - layers.terrain.height_at(0.0, 0.0)
             assert middle_up_m == pytest.approx(RIDGE[line, sample], abs=0.02)
 
@@ -193,6 +194,7 @@ def test_the_patches_of_gale_keep_the_map_to_a_centimetre(data_dir: Path) -> Non
         north = (i - row) * origin["pixel_north_m"]
         east = (j - col) * origin["pixel_east_m"]
         inside = (np.abs(north) <= 59.9) & (np.abs(east) <= 59.9)
+        assert layers.datum_up_m is not None
         found = layers.datum_up_m - ground.height_at(north[inside], east[inside])
         assert inside.sum() > 14_000
         worst_m = max(worst_m, float(np.abs(found - pixels[inside]).max()))

@@ -17,7 +17,7 @@ from sim.tests.map_files import MISSING, RADIUS_M, eqc, write_map, write_pds3
 pytest.importorskip("rasterio")
 
 N, E = np.meshgrid(np.arange(60.0)[::-1], np.arange(50.0), indexing="ij")
-GROUND = np.float32(0.05 * N + 0.4 * np.sin(E / 7) + 0.3 * np.cos(N / 5))
+GROUND = (0.05 * N + 0.4 * np.sin(E / 7) + 0.3 * np.cos(N / 5)).astype(np.float32)
 
 
 def all_of(path: Path) -> np.ndarray:
@@ -127,7 +127,7 @@ def test_the_wanted_band_is_read(tmp_path: Path) -> None:
 
 def test_a_written_geotiff_comes_back(tmp_path: Path) -> None:
     place = MapPlace(eqc(), 100.5, 40.5, 2.0)
-    values = np.float32(np.arange(24).reshape(2, 3, 4))
+    values = np.arange(24, dtype=np.float32).reshape(2, 3, 4)
     values[0, 1, 1] = np.nan
     (tmp_path / "c.tif").write_bytes(geotiff(values, place, ["a", "b"]))
     source = open_raster(tmp_path / "c.tif", 1)

@@ -14,9 +14,11 @@ from sim.terrain import Terrain, centred
 Array = npt.NDArray[np.float64]
 
 
-def march_m(terrain: Terrain, origin: Array, direction: Array, range_max_m: float) -> float:
-    """First crossing, found by steps of 2 mm and linear interpolation."""
-    steps = np.arange(0.0, range_max_m, 0.002)
+def march_m(
+    terrain: Terrain, origin: Array, direction: Array, range_max_m: float, step_m: float = 0.002
+) -> float:
+    """First crossing, found by small steps and linear interpolation."""
+    steps = np.arange(0.0, range_max_m, step_m)
     points = origin + steps[:, None] * direction
     above = terrain.height_at(points[:, 0], points[:, 1]) - points[:, 2]
     under = np.nonzero(above <= 0)[0]
@@ -25,7 +27,7 @@ def march_m(terrain: Terrain, origin: Array, direction: Array, range_max_m: floa
     i = int(under[0])
     if i == 0:
         return 0.0
-    return float(steps[i - 1] + 0.002 * above[i - 1] / (above[i - 1] - above[i]))
+    return float(steps[i - 1] + step_m * above[i - 1] / (above[i - 1] - above[i]))
 
 
 def unit_vectors(rng: np.random.Generator, count: int, down: float) -> Array:
@@ -118,3 +120,83 @@ def test_rays_along_grid_lines_end() -> None:
     down = directions[:, 2] > 0
     np.testing.assert_allclose(found[down], 0.5 / directions[down, 2], rtol=1e-5)
     assert np.isnan(found[~down]).all()
+
+
+def sampled_m(terrain: Terrain, origin: Array, directions: Array, range_max_m: float) -> Array:
+    """First crossings [n]: all rays stepped by a centimetre, then halved to a micrometre."""
+    found = np.full(len(directions), np.nan)
+    alive = np.arange(len(directions))
+    near = 0.0
+    while len(alive) and near < range_max_m:
+        far = min(near + 0.01, range_max_m)
+        points = origin + far * directions[alive]
+        under = terrain.height_at(points[:, 0], points[:, 1]) <= points[:, 2]
+        hit = alive[under]
+        low, high = np.full(len(hit), near), np.full(len(hit), far)
+        for _ in range(14):
+            middle = 0.5 * (low + high)
+            points = origin + middle[:, None] * directions[hit]
+            is_under = terrain.height_at(points[:, 0], points[:, 1]) <= points[:, 2]
+            low, high = np.where(is_under, low, middle), np.where(is_under, middle, high)
+        found[hit] = high
+        alive = alive[~under]
+        near = far
+    return found
+
+
+@pytest.mark.slow
+def test_a_hundred_thousand_ranges_equal_an_independent_computation(rocky: Terrain) -> None:
+    rng = np.random.default_rng(9)
+    caster = RayCaster(rocky)
+    grazing = 0
+    for _ in range(10):
+        north, east = rng.uniform(-10, 10, 2)
+        origin = np.array([north, east, float(rocky.height_at(north, east)) - 1.98])
+        directions = unit_vectors(rng, 10_000, down=0.6)
+        found = caster.ranges_m(origin, directions, 12.0)
+        expected = sampled_m(rocky, origin, directions, 12.0)
+        same = np.isclose(found, expected, rtol=0, atol=1e-3, equal_nan=True)
+        # what a centimetre steps over: a ray that dips into an edge for less than that
+        for ray in np.flatnonzero(~same):
+            expected[ray] = march_m(rocky, origin, directions[ray], float(found[ray]) + 0.02, 2e-5)
+        grazing += int(np.count_nonzero(~same))
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-3)
+    assert grazing < 100
+
+
+@pytest.mark.parametrize("range_max_m", [3.0, 14.0, 60.0, 5000.0])
+def test_far_and_near_limits_see_the_same(rocky: Terrain, range_max_m: float) -> None:
+    caster = RayCaster(rocky)
+    directions = unit_vectors(np.random.default_rng(6), 3000, down=0.15)
+    origin = np.array([3.0, -2.0, float(rocky.height_at(3.0, -2.0)) - 2.0])
+    expected = caster.ranges_m(origin, directions, 100.0)
+    expected[expected > range_max_m] = np.nan
+    np.testing.assert_array_equal(caster.ranges_m(origin, directions, range_max_m), expected)
+
+
+def test_a_hit_does_not_depend_on_the_rays_beside_it(rocky: Terrain) -> None:
+    caster = RayCaster(rocky)
+    directions = unit_vectors(np.random.default_rng(7), 500, down=0.2)
+    origin = np.array([0.0, 0.0, float(rocky.height_at(0.0, 0.0)) - 2.0])
+    together = caster.ranges_m(origin, directions, 30.0)
+    alone = [caster.ranges_m(origin, one, 30.0)[0] for one in directions[::-1]][::-1]
+    np.testing.assert_array_equal(together, alone)
+
+
+def test_ground_is_seen_from_high_above_and_outside_the_map(rocky: Terrain) -> None:
+    caster = RayCaster(rocky)
+    rng = np.random.default_rng(8)
+    for _ in range(200):
+        place = rng.uniform(-15, 15, 2)
+        target = np.array([*place, float(rocky.height_at(*place))])
+        origin = np.array([*rng.uniform(30, 60, 2) * rng.choice([-1, 1], 2), target[2] - 90.0])
+        ray = target - origin
+        distance = float(np.linalg.norm(ray))
+        found = float(caster.ranges_m(origin, ray / distance, 200.0)[0])
+        expected = march_m(rocky, origin, ray / distance, distance + 0.1)
+        assert found == pytest.approx(expected, abs=1e-3)
+
+
+def test_broken_directions_hit_nothing(flat: Terrain) -> None:
+    directions = np.array([[math.nan, 0, 1], [0, 0, math.nan], [0, 0, 0], [math.inf, 0, 1]])
+    assert np.isnan(RayCaster(flat).ranges_m([0, 0, -2], directions, 10)).all()

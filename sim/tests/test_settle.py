@@ -7,7 +7,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 import pytest
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, root
+from scipy.spatial.transform import Rotation
 
 from sim.errors import TerrainError
 from sim.frames import rotation
@@ -67,7 +68,45 @@ def test_linkage_reproduces_the_golden_table(
         ]
     )
     assert state.converged
-    np.testing.assert_allclose(found, expected_deg, atol=0.0101)
+    # the table has two decimals: nothing but its own rounding
+    np.testing.assert_allclose(found, expected_deg, atol=0.005)
+
+
+def _hub_depths(unknown: Array, vehicle: Vehicle, yaw_rad: float) -> npt.NDArray[np.float64]:
+    """SITE z of six hubs: homogeneous transforms, joint after joint."""
+
+    def joint(point: Array, angle: float) -> Array:
+        frame = np.eye(4)
+        # nose-down is a negative turn about the y axis, which points right
+        frame[:3, :3] = Rotation.from_euler("y", -angle).as_matrix()
+        frame[:3, 3] = point - frame[:3, :3] @ point
+        return frame
+
+    z_m, roll, pitch, rocker, *bogies = unknown
+    body = np.eye(4)
+    body[:3, :3] = Rotation.from_euler("ZYX", [yaw_rad, pitch, roll]).as_matrix()
+    body[2, 3] = z_m
+    depths = []
+    for wheel, hub in enumerate(vehicle.hubs_m):
+        side = wheel // 3
+        chain = body @ joint(vehicle.rocker_pivots_m[side], rocker if side == 0 else -rocker)
+        if wheel % 3 > 0:
+            chain = chain @ joint(vehicle.bogie_pivots_m[side], bogies[side])
+        depths.append((chain @ [*hub, 1.0])[2])
+    return np.array(depths)
+
+
+@pytest.mark.parametrize("raised_m", [*GOLDEN, (0.1, -0.2, 0.05, 0.3, 0.0, -0.1)])
+def test_linkage_agrees_with_an_independent_root_to_a_ten_thousandth_degree(
+    raised_m: tuple[float, ...],
+) -> None:
+    vehicle, hubs = golden_vehicle(), -0.25 - np.array(raised_m)
+    answer = root(lambda unknown: _hub_depths(unknown, vehicle, 0.7) - hubs, np.zeros(6), tol=1e-13)
+    assert answer.success
+    state = settle_on_hub_heights(vehicle, 0.7, hubs)
+    found = [state.z_m, *(getattr(state, name) for name in ANGLES)]
+    np.testing.assert_allclose(np.degrees(found[1:]), np.degrees(answer.x[1:]), atol=1e-4)
+    assert found[0] == pytest.approx(answer.x[0], abs=1e-7)
 
 
 def test_hub_lifts_add_up_to_the_body_lift() -> None:

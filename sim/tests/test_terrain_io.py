@@ -298,3 +298,20 @@ def test_the_two_forms_of_gale_agree(data_dir: Path) -> None:
 def test_the_marias_pass_pgm_is_read(data_dir: Path) -> None:
     terrain = read_terrain(data_dir / "marias_pass_025m.pgm")
     assert terrain.north_max_m == pytest.approx(60.0)
+
+
+def test_one_spike_and_a_place_on_a_planet_survive_storing(tmp_path: Path) -> None:
+    z = np.zeros((20, 30), np.float32)
+    z[4, 5] = -900.0
+    write_terrain(centred(z, 1.0), tmp_path / "t.pgm", {"map_x": 1.5, "dem": "m.tif"})
+    found = read_terrain(tmp_path / "t.pgm").z_site_m
+    np.testing.assert_allclose(found, z, atol=900 / 65535)
+    assert "origin: {map_x: 1.5, dem: m.tif}" in (tmp_path / "t.yaml").read_text()
+
+
+@pytest.mark.parametrize("hole", [np.nan, -3.4e38, -9999.0])
+def test_all_kinds_of_no_data_are_holes(tmp_path: Path, hole: float) -> None:
+    nodata = {"nodata": hole} if hole == -9999.0 else {}
+    terrain = read_terrain(write_tiff(tmp_path / "t.tif", [[1, 2], [3, hole]], **nodata))
+    assert np.isnan(terrain.z_site_m[0, 1])
+    assert np.isfinite(terrain.z_site_m).sum() == 3

@@ -13,10 +13,10 @@ from sim.kinematics import Arc, pose_along
 from sim.localization import NoiseConfig
 from sim.settle import Settler
 from sim.slip import SlipConfig
-from sim.terrain import Terrain
+from sim.terrain import CLASS_NAMES, Terrain, centred
 from sim.tests.conftest import terrain_of
 from sim.vehicle import Vehicle, load_vehicle
-from sim.world import TruthState, World, true_limit_violation
+from sim.world import TruthState, World, off_map_reason, true_limit_violation
 
 CAMERA = CameraConfig(cloud_width_px=40, cloud_height_px=30)
 NO_SLIP = SlipConfig(enabled=False)
@@ -217,3 +217,147 @@ def test_flat_ground_violates_nothing(flat: Terrain, vehicle: Vehicle) -> None:
     state = Settler(flat, vehicle).settle(0.0, 0.0, 1.0)
     assert true_limit_violation(state, vehicle) is None
     assert np.isfinite(state.contact_site_m).all()
+
+
+def drive_north(terrain: Terrain, vehicle: Vehicle, length_m: float) -> list[TruthState]:
+    """Truths until the first fault or the end of the arc."""
+    world = World(terrain, vehicle, CAMERA, NO_NOISE, NO_SLIP)
+    world.start_arc(length_m, 0.0)
+    truths = [world.truth]
+    while not world.arc_done and fault_of(truths[-1], vehicle) is None:
+        truths.append(world.step())
+        world.image()
+    return truths
+
+
+def fault_of(truth: TruthState, vehicle: Vehicle) -> str | None:
+    return true_limit_violation(truth, vehicle) if truth.on_map else "off the map"
+
+
+def holed(flat: Terrain, north_m: tuple[float, float], east_m: tuple[float, float]) -> Terrain:
+    """The flat terrain without ground in a rectangle."""
+    z = flat.z_site_m.copy()
+    rows = (flat.north_m > north_m[0]) & (flat.north_m < north_m[1])
+    cols = (flat.east_m > east_m[0]) & (flat.east_m < east_m[1])
+    z[np.ix_(rows, cols)] = np.nan
+    return centred(z, flat.resolution_m)
+
+
+@pytest.mark.parametrize("east_m", [(-5.0, 5.0), (0.9, 1.2), (-1.2, -1.1)])
+def test_a_wheel_over_a_hole_ends_the_drive_and_says_why(
+    flat: Terrain, vehicle: Vehicle, east_m: tuple[float, float]
+) -> None:
+    terrain = holed(flat, (3.0, 6.0), east_m)
+    truths = drive_north(terrain, vehicle, 4.0)
+    last = truths[-1]
+    # the front wheels' rims reach the hole when the rover is this far
+    assert last.x_m == pytest.approx(3.0 - 1.185 - 0.26, abs=0.15)
+    if last.on_map:
+        assert str(fault_of(last, vehicle)).startswith("not settled: a wheel is")
+    else:
+        assert math.isnan(last.z_m)
+        reason = off_map_reason(last, terrain)
+        assert reason == "a wheel over the edge of the map or over a hole in the terrain"
+    assert all(truth.residual_m <= 0.01 for truth in truths[:-1])
+
+
+def test_over_the_edge_says_why(flat: Terrain, vehicle: Vehicle) -> None:
+    world = World(flat, vehicle, CAMERA, start=(99.0, 0.0, 0.0))
+    assert off_map_reason(world.truth, flat) == "over the edge of the map"
+
+
+def test_a_hole_under_the_whole_belly_is_a_fault(flat: Terrain, vehicle: Vehicle) -> None:
+    terrain = holed(flat, (-1.6, 1.3), (-0.79, 0.79))
+    truth = World(terrain, vehicle, CAMERA).truth
+    assert truth.on_map
+    found = true_limit_violation(truth, vehicle)
+    assert found is not None
+    assert "hole in the terrain" in found
+
+
+@pytest.mark.parametrize("height_m", [1.0, 3.0, 50.0, -1.0, -3.0, -50.0])
+def test_a_cliff_ends_the_drive_with_a_reason(vehicle: Vehicle, height_m: float) -> None:
+    cliff = terrain_of(lambda n, _e: np.where(n > 2, height_m, 0.0), size_m=40)
+    truths = drive_north(cliff, vehicle, 5.0)
+    found = fault_of(truths[-1], vehicle)
+    assert found is not None
+    assert truths[-1].x_m < 1.5
+    # until then every pose was a settled one
+    assert all(truth.residual_m <= 0.01 for truth in truths[:-1])
+
+
+def test_ground_too_steep_to_settle_on_is_never_a_silent_pose(vehicle: Vehicle) -> None:
+    """Noise of ten metres from node to node: what is not settled says so."""
+    rng = np.random.default_rng(0)
+    spikes = terrain_of(lambda n, _e: rng.uniform(-5, 5, n.shape), size_m=30)
+    places = rng.uniform(-10, 10, (100, 2))
+    settler = Settler(spikes, vehicle)
+    states = [settler.settle(north, east, 0.3) for north, east in places.tolist()]
+    bad = [state for state in states if state.residual_m > 1e-3]
+    assert len(bad) > 10
+    for state in bad:
+        assert not state.converged
+        found = true_limit_violation(state, vehicle)
+        assert found is not None
+        if state.residual_m > 0.01:
+            assert found.startswith("not settled")
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_broken_nodes_do_no_harm(flat: Terrain, vehicle: Vehicle, bad: float) -> None:
+    z = flat.z_site_m.copy()
+    z[np.random.default_rng(1).random(z.shape) < 0.01] = bad
+    terrain = centred(z, flat.resolution_m)
+    truths = drive_north(terrain, vehicle, 6.0)
+    assert fault_of(truths[-1], vehicle) is not None
+
+
+def test_slip_follows_the_class_map(flat: Terrain, vehicle: Vehicle) -> None:
+    classes = np.where(flat.north_m > 0.0, CLASS_NAMES.index("sand"), 0).astype(np.uint8)
+    terrain = dataclasses.replace(
+        flat, classes=np.broadcast_to(classes[:, None], flat.z_site_m.shape)
+    )
+    slip = SlipConfig(mode="table", terrain_class="bedrock", yaw_sigma_deg_sqrt_m=0.0)
+    world = World(terrain, vehicle, CAMERA, NO_NOISE, slip, start=(-1.0, 0.0, 0.0))
+    assert world.expected_slip(0.0) == pytest.approx(0.02)
+    world.start_arc(2.0, 0.0)
+    found = []
+    while not world.arc_done:
+        on_sand = world.truth.x_m > 0.05
+        is_clear = abs(world.truth.x_m) > 0.06
+        truth = world.step()
+        if is_clear:
+            found.append((on_sand, round(truth.slip, 6)))
+    assert set(found) == {(False, 0.02), (True, 0.08)}
+    assert world.expected_slip(0.0) == pytest.approx(0.08)
+
+
+def test_the_mast_looks_where_it_is_told(flat: Terrain, vehicle: Vehicle) -> None:
+    world = World(flat, vehicle, CAMERA, NO_NOISE, NO_SLIP)
+    ahead, back = world.image([0.0]), world.image([180.0])
+    assert np.median(ahead[:, 0]) > 2.0
+    assert np.median(back[:, 0]) < -2.0
+    assert len(world.image([-60.0, 0.0, 60.0])) > 2.5 * len(ahead)
+    assert world.picture(90.0, 10.0, 20.0).shape == (30, 40)
+
+
+@pytest.mark.slow
+def test_a_long_drives_error_stays_within_what_is_reported(vehicle: Vehicle) -> None:
+    """Forty runs of 20 m with failing VO: position errors have the size of the reported sigma."""
+    terrain = terrain_of(lambda n, _e: 0.05 * n, size_m=60)
+    noise = NoiseConfig(vo_failure_probability=0.05)
+    scaled = []
+    for seed in range(40):
+        world = World(terrain, vehicle, CAMERA, noise, start=(-10.0, 0.0, 0.0), seed=seed)
+        sigmas = [world.estimate.sigma_position_m]
+        for _ in range(20):
+            world.start_arc(1.0, 0.0)
+            finish(world)
+            world.visual_odometry()
+            sigmas.append(world.estimate.sigma_position_m)
+        assert sigmas == sorted(sigmas)
+        error = (world.estimate.x_m - world.truth.x_m, world.estimate.y_m - world.truth.y_m)
+        scaled.append(np.array(error) / sigmas[-1])
+    # sigma is that of the worst direction: the mean square of two axes is at most 2
+    square = float(np.mean(np.sum(np.square(scaled), axis=1)))
+    assert 0.5 < square < 2.5

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Write the pages of docs/ that are made from the C tables: `make docs`."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from pyharness import tables
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+NOTE = "<!-- made by `make docs` from the tables of navlib_c/include: do not edit -->\n\n"
+
+
+def pages() -> Mapping[str, str]:
+    """Return the text of every page by its name."""
+    return {
+        "parameters.md": "# Parameters of Navlib\n\n"
+        + NOTE
+        + "Sources: [U] geometry of NASA's M2020 URDF; [S] SIM, IEEE Aerospace 2020; [E] published"
+        " ENav numbers;\n[C] chosen here, with the reason. None of [C] is flight data. Set them"
+        " with `--set navlib.NAME=VALUE`.\n\n" + tables.to_markdown(tables.param_rows()),
+        "events.md": "# Event reports of Navlib\n\n"
+        + NOTE
+        + "A `{}` in a text stands for an argument; the last column gives their meaning in order."
+        " Calls are named by\nthe kind of their [data product](data_products.md).\n\n"
+        + tables.to_markdown(tables.evr_rows()),
+        "data_products.md": "# Data products\n\n"
+        + NOTE
+        + "The records that a drive writes; [SPEC_DP](../navlib_c/SPEC_DP.md) says how they stand"
+        " in a file.\n\n## Kinds\n\n"
+        + tables.to_markdown(tables.dp_rows())
+        + "\n## Fields\n\n"
+        + tables.to_markdown(tables.field_rows()),
+    }
+
+
+def main() -> None:
+    for name, text in pages().items():
+        (DOCS / name).write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
