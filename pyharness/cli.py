@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pyharness.cli_sim import stereo_noise
 from pyharness.cli_terrain import terrain
 from pyharness.cli_types import Assignment, Numbers, as_options
 from pyharness.errors import HarnessError
@@ -56,6 +57,7 @@ def _fail(message: str) -> int:
 
 
 cli.add_command(terrain)
+terrain.add_command(stereo_noise)
 
 
 # ------------------------------------------------------------------ enav drive

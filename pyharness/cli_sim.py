@@ -18,7 +18,7 @@ SIGMAS_PX = (0.0, 1.0, 10.0)
 @click.argument("file", type=FILE, required=False)
 @click.option("--at", type=Numbers("N,E,YAW_DEG"), help="Where the rover stands (0,0,0).")
 @click.option(
-    "--sigma-px", type=float, multiple=True, help="Disparity σ; may be repeated (0, 1 and 10)."
+    "--sigma-px", type=float, multiple=True, help="Disparity sigma; may be repeated (0, 1 and 10)."
 )
 @click.option("--camera", type=click.Choice(["navcam", "pinhole"]), default="navcam")
 @click.option("--seed", type=int, default=0, help="Of the noise, and of the terrain made.")

@@ -1,19 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """One drive from a scenario: world, planner and executive together."""
 
-from collections.abc import Callable
-
-import numpy as np
-import numpy.typing as npt
-
 from pyharness.executive import Executive, SafetyWatch
 from pyharness.navlib import Zones
 from pyharness.planner import Planner
 from pyharness.records import KIND_END, Outcome, RecordStream, end_payload
 from pyharness.scenario import Scenario, drive_info, navlib_params, zones_request
 from pyharness.thinker import Thinker
-from sim.camera import StereoCamera
-from sim.random_streams import rng_for
 from sim.terrain import Terrain
 from sim.vehicle import Vehicle
 from sim.world import World, true_limit_violation
@@ -38,7 +31,7 @@ def drive(
     zones = zones_request(scenario)
     executive = Executive(
         world,
-        _look_around(scenario, terrain, vehicle, world),
+        lambda: world.image(scenario.executive.look_around_deg),
         Thinker(planner_class(navlib_params(scenario), stream.publish), scenario.executive.compute),
         info.waypoints,
         scenario.executive,
@@ -51,13 +44,3 @@ def drive(
     outcome = executive.run(zones)
     stream.publish(KIND_END, world.time_s, end_payload(outcome))
     return outcome
-
-
-def _look_around(
-    scenario: Scenario, terrain: Terrain, vehicle: Vehicle, world: World
-) -> Callable[[], npt.NDArray[np.float32]]:
-    """Return a function that images in all the directions of a look around."""
-    directions = {"azimuths_deg": scenario.executive.look_around_deg}
-    camera = StereoCamera(terrain, vehicle, scenario.camera.model_copy(update=directions))
-    rng = rng_for(scenario.seed, "camera.look_around")
-    return lambda: camera.image(world.truth, rng)

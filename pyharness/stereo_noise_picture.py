@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What stereo error does to the heightmap (SIM Fig. 8): Navlib's map of one place, noise by noise."""
+"""What stereo error does to the heightmap (SIM Fig. 8): Navlib's map, noise by noise."""
 
 import math
 from collections.abc import Sequence
@@ -128,7 +128,7 @@ def _draw(maps: Sequence[Heightmap], state: SettledState, path: Path) -> None:
         )
         _panel(axes[1, column], error, one, state)
         name = "no noise" if one.sigma_px == 0.0 else f"{one.sigma_px:g} px"
-        axes[0, column].set_title(f"Disparity σ: {name}", fontsize=11)
+        axes[0, column].set_title(rf"Disparity $\sigma$: {name}", fontsize=11)
         axes[1, column].text(
             0.03, 0.03, _error_text(one), transform=axes[1, column].transAxes, fontsize=8,
             family="DejaVu Sans Mono", va="bottom", bbox=TEXT_BOX,

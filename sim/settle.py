@@ -40,8 +40,10 @@ class SettledState:
     Attributes:
         rocker_rad: Left rocker against the body, positive nose-down; the right one is opposite.
         bogie_left_rad: Left bogie against its rocker, positive nose-down; likewise the right.
-        clearance_m: Least distance along body z from belly pan to a terrain node under it.
-        wheel_drop_m: Largest height span in one wheel's footprint, across the slope of the ground.
+        clearance_m: Least distance along body z from belly pan to a terrain node under it; NaN over
+            a hole in the terrain.
+        wheel_drop_m: Largest height span in one wheel's footprint, across the slope of the ground;
+            likewise.
         contact_site_m: Contact points [6, 3] in SITE: LF, LM, LR, RF, RM, RR.
         residual_m: Largest vertical gap between a wheel and the ground.
     """

@@ -60,7 +60,9 @@ void nav_ace_evaluate(const nav_ace_scene_t *scene,
  * The first limit that bounds exceed, NONE when there is none.
  * @param is_leaving  true: the leave limits, for a rover that finds no other way on
  */
-nav_reason_t nav_ace_refuse(const nav_params_t *params, const nav_ace_bounds_t *bounds, bool is_leaving);
+nav_reason_t nav_ace_refuse(const nav_params_t *params,
+                            const nav_ace_bounds_t *bounds,
+                            bool is_leaving);
 
 /** The uncertainty after a distance along a path: grown, but never beyond its bounds. */
 nav_uncertainty_t nav_ace_grow(const nav_params_t *params,

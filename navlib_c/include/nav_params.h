@@ -80,7 +80,8 @@
     X(leave_clearance_min_m, 0.30, 0.0, 1.0, "m",                                                  \
       "leave limit [C]: 5 cm above what operators call a fault")                                   \
     X(leave_tilt_max_rad, 0.5759586532, 0.05, 1.3, "rad", "leave limit [C]: 33 deg; fault at 35")  \
-    X(leave_rocker_max_rad, 0.1919862177, 0.02, 1.0, "rad", "leave limit [C]: 11 deg; fault at 12")\
+    X(leave_rocker_max_rad, 0.1919862177, 0.02, 1.0, "rad",                                        \
+      "leave limit [C]: 11 deg; fault at 12")                                                      \
     X(leave_bogie_max_rad, 0.6108652382, 0.05, 1.3, "rad", "leave limit [C]: 35 deg; fault at 38") \
     X(leave_wheel_drop_max_m, 0.42, 0.02, 1.0, "m", "leave limit [C]: 3 cm below a fault")         \
     X(wheel_unknown_max, 0.5, 0.0, 1.0, "1",                                                       \

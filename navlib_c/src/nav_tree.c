@@ -7,9 +7,9 @@
 
 #include <math.h>
 
+#include "nav_guard.h"
 #include "nav_math.h"
 
-#define SEGMENTS 3U
 #define TURNS ((uint32_t) NAV_TREE_TURNS)
 #define ARCS ((uint32_t) NAV_TREE_ARCS)
 #define PATHS ((uint32_t) NAV_TREE_PATHS)
@@ -31,7 +31,7 @@ typedef struct
     bool use_terrain_cost;
     bool use_zone_cost;
     bool test_terrain;
-    bool is_leaving; /* no path passed the planning limits */
+    bool is_leaving;     /* no path passed the planning limits */
     uint32_t budget_end; /* of ace_evaluations */
     uint32_t ace_evaluations;
     uint32_t candidate_count;
@@ -349,7 +349,7 @@ static void sift_down(nav_tree_t *tree, uint32_t root, uint32_t count)
 {
     uint32_t place = root;
     bool is_placed = false;
-    for (uint32_t level = 0U; (level < PATHS) && !is_placed; level++)
+    for (uint32_t level = 0U; NAV_ALWAYS(level < PATHS) && !is_placed; level++)
     {
         uint32_t child = (2U * place) + 1U;
         if (((child + 1U) < count) && is_cheaper(tree, tree->order[child], tree->order[child + 1U]))

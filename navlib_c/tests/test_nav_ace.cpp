@@ -140,6 +140,23 @@ TEST(Ace, a_middle_wheel_raised_to_the_bogie_limit_is_refused_for_the_bogie)
     EXPECT_EQ(NAV_REASON_BOGIE, reason(0.44));
 }
 
+TEST(Ace, either_bogie_at_either_end_of_its_range_is_refused)
+{
+    nav_params_t params;
+    nav_params_default(&params);
+    nav_ace_bounds_t fine = on(flat);
+    const double beyond_rad = params.bogie_max_rad + 0.01;
+    for (int k = 0; k < 4; k++)
+    {
+        nav_ace_bounds_t bounds = fine;
+        double *const ends[4] = {&bounds.bogie_left_max_rad, &bounds.bogie_right_max_rad,
+                                 &bounds.bogie_left_min_rad, &bounds.bogie_right_min_rad};
+        *ends[k] = (k < 2) ? beyond_rad : -beyond_rad;
+        EXPECT_EQ(NAV_REASON_BOGIE, nav_ace_refuse(&params, &bounds, false)) << k;
+        EXPECT_EQ(NAV_REASON_NONE, nav_ace_refuse(&params, &bounds, true)) << k;
+    }
+}
+
 TEST(Ace, raising_a_rock_under_a_wheel_or_the_belly_never_makes_a_pose_safer)
 {
     const double places_m[4][2] = {{1.2, -1.06}, {0.5, -0.4}, {0.0, 1.2}, {-1.0, 1.0}};

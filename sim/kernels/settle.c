@@ -655,6 +655,11 @@ typedef struct
     double high;
 } range_t;
 
+static inline int is_in_box(const box_t *box, double x, double y)
+{
+    return (x >= box->x_min) && (x <= box->x_max) && (y >= box->y_min) && (y <= box->y_max);
+}
+
 static int32_t clamp_index(double value, int32_t count)
 {
     return (value < 0.0) ? 0 : ((value > (double) (count - 1)) ? count - 1 : (int32_t) value);
@@ -688,7 +693,10 @@ static void box_nodes(const problem_t *problem,
     }
 }
 
-/* lowest and highest depth under the rover origin over the terrain nodes inside the box */
+/*
+ * Lowest and highest depth under the rover origin over the terrain nodes inside the box; NaN when a
+ * node without ground lies in it, taken at the height of the origin.
+ */
 static range_t span_in_box(const problem_t *problem,
                            const iterate_t *iterate,
                            const box_t *box,
@@ -697,6 +705,7 @@ static range_t span_in_box(const problem_t *problem,
     const sim_terrain_t *terrain = problem->terrain;
     const linkage_t *linkage = &iterate->linkage;
     range_t span = {INFINITY, -INFINITY};
+    int has_hole = 0;
     int32_t range[4];
     box_nodes(problem, iterate, box, z_body, range);
     const double east_m = terrain->east_min_m - problem->pose[1];
@@ -714,13 +723,23 @@ static range_t span_in_box(const problem_t *problem,
             const double down = (double) z_site_m[col] - iterate->q[Q_Z];
             const double x = x_row + (linkage->ex[1] * east) + (linkage->ex[2] * down);
             const double y = y_row + (linkage->ey[1] * east) + (linkage->ey[2] * down);
-            if ((x >= box->x_min) && (x <= box->x_max) && (y >= box->y_min) && (y <= box->y_max))
+            if (is_in_box(box, x, y))
             {
                 const double depth = depth_row + (box->down[1] * east) + (box->down[2] * down);
                 span.low = (depth < span.low) ? depth : span.low;
                 span.high = (depth > span.high) ? depth : span.high;
             }
+            else if (isnan(down))
+            {
+                has_hole |= is_in_box(box, x_row + (linkage->ex[1] * east),
+                                      y_row + (linkage->ey[1] * east));
+            }
         }
+    }
+    if (has_hole)
+    {
+        span.low = NAN;
+        span.high = NAN;
     }
     return span;
 }
@@ -811,8 +830,9 @@ static double wheel_drop_m(const problem_t *problem, const iterate_t *iterate)
                            hub[1] + half_width,
                            {down[0], down[1], down[2]}};
         const range_t span = span_in_box(problem, iterate, &box, &z_wheel);
-        const double drop = (span.high >= span.low) ? span.high - span.low : 0.0;
-        largest = (drop > largest) ? drop : largest;
+        /* a box between coarse nodes holds none and has no drop; one with a hole has no known one */
+        const double drop = (span.high < span.low) ? 0.0 : span.high - span.low;
+        largest = ((drop > largest) || isnan(drop)) ? drop : largest;
     }
     return largest;
 }

@@ -66,7 +66,8 @@ typedef struct
  * right one its negative. A bogie angle is the bogie against its rocker, positive nose-down.
  * clearance_m: smallest distance, along the body z axis, from the belly pan down to a terrain node
  * inside the belly box. wheel_drop_m: largest span of terrain in one wheel's box, measured across
- * the slope of the ground around the rover; NaN without that slope.
+ * the slope of the ground around the rover; NaN without that slope. Both are NaN when a node in
+ * their boxes has no ground.
  */
 typedef struct
 {

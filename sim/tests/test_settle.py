@@ -335,6 +335,29 @@ def test_a_hole_under_a_wheel_is_no_ground(flat: Terrain, vehicle: Vehicle) -> N
     assert Settler(holed, vehicle).settle(10, 0, 0).on_map
 
 
+@pytest.mark.parametrize(
+    ("place", "unknown"),
+    [
+        ((0.3, 0.2), "clearance_m"),
+        ((0.0, -1.1845 + 0.15), "wheel_drop_m"),
+        ((1.185, 1.0625 - 0.12), "wheel_drop_m"),
+    ],
+)
+def test_a_hole_beside_the_contacts_leaves_its_quantity_unknown(
+    flat: Terrain, vehicle: Vehicle, place: tuple[float, float], unknown: str
+) -> None:
+    z = flat.z_site_m.copy()
+    row, col = np.abs(flat.north_m - place[0]).argmin(), np.abs(flat.east_m - place[1]).argmin()
+    z[row, col] = np.nan
+    state = Settler(centred(z, flat.resolution_m), vehicle).settle(0.0, 0.0, 0.0)
+    assert state.on_map
+    assert state.converged
+    for name in ("clearance_m", "wheel_drop_m"):
+        assert math.isnan(getattr(state, name)) == (name == unknown)
+    # the pose itself does not depend on it
+    assert state.tilt_rad == Settler(flat, vehicle).settle(0.0, 0.0, 0.0).tilt_rad
+
+
 def test_a_bad_guess_does_no_harm(rocky: Terrain, vehicle: Vehicle) -> None:
     settler = Settler(rocky, vehicle)
     cold = settler.settle(2, 3, 1)
