@@ -6,6 +6,7 @@
 #include "nav_tree.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #include "nav_guard.h"
 #include "nav_math.h"
@@ -46,6 +47,18 @@ typedef struct
     bool is_at_goal;
     nav_reason_t reason; /* of an infinite cell on the way */
 } branch_t;
+
+/** The poses of an arc from a start: one of the tree's, whose shape is known, or any other. */
+typedef struct
+{
+    nav_pose2_t start;
+    nav_arc_t arc;
+    uint32_t pose_count; /* 0 for an empty arc */
+    double spacing_m;
+    const nav_tree_shapes_t *shapes; /* null for an arc that is not the tree's */
+    uint32_t shape;
+    double cos_sin[2]; /* of the start's yaw */
+} walk_t;
 
 /** Verdict and worst bounds of an arc tested pose by pose. */
 typedef struct
@@ -93,21 +106,53 @@ static nav_arc_t tree_arc(const call_t *call, uint32_t k)
     return arc;
 }
 
-/** Pose at one place of an arc of the tree; cos and sin belong to the start's yaw. */
-static nav_pose2_t shape_pose(const nav_tree_shapes_t *shapes,
-                              const nav_pose2_t *start,
-                              uint32_t k,
-                              uint32_t place,
-                              const double cos_sin[2])
+static bool is_empty_arc(const nav_arc_t *arc)
 {
-    const double forward_m = shapes->forward_m[k][place];
-    const double right_m = shapes->right_m[k][place];
-    const double fraction = (double) (place + 1U) / (double) shapes->pose_count;
-    const nav_pose2_t pose = {
-        start->x_m + (forward_m * cos_sin[0]) - (right_m * cos_sin[1]),
-        start->y_m + (forward_m * cos_sin[1]) + (right_m * cos_sin[0]),
-        start->yaw_rad + (fraction * shapes->heading_change_rad[k]),
-    };
+    return (fabs(arc->length_m) <= EMPTY_M) && (fabs(arc->heading_change_rad) <= EMPTY_M);
+}
+
+/** Walks an arc of the tree. */
+static walk_t tree_walk(const call_t *call, const nav_pose2_t *start, uint32_t k)
+{
+    const nav_tree_shapes_t *shapes = call->scene->shapes;
+    const walk_t walk = {.start = *start,
+                         .arc = tree_arc(call, k),
+                         .pose_count = shapes->pose_count,
+                         .spacing_m = call->params->tree_arc_length_m / (double) shapes->pose_count,
+                         .shapes = shapes,
+                         .shape = k,
+                         .cos_sin = {nav_cos(start->yaw_rad), nav_sin(start->yaw_rad)}};
+    return walk;
+}
+
+/** Walks any arc or turn in place. */
+static walk_t arc_walk(const call_t *call, const nav_pose2_t *start, const nav_arc_t *arc)
+{
+    walk_t walk = {.start = *start, .arc = *arc};
+    if (!is_empty_arc(arc))
+    {
+        walk.pose_count = nav_arc_pose_count(call->params, arc);
+        walk.spacing_m = arc->length_m / (double) walk.pose_count;
+    }
+    return walk;
+}
+
+static nav_pose2_t walk_pose(const walk_t *walk, uint32_t place)
+{
+    const double fraction = (double) (place + 1U) / (double) walk->pose_count;
+    nav_pose2_t pose = walk->start;
+    if (walk->shapes != NULL)
+    {
+        const double forward_m = walk->shapes->forward_m[walk->shape][place];
+        const double right_m = walk->shapes->right_m[walk->shape][place];
+        pose.x_m = pose.x_m + (forward_m * walk->cos_sin[0]) - (right_m * walk->cos_sin[1]);
+        pose.y_m = pose.y_m + (forward_m * walk->cos_sin[1]) + (right_m * walk->cos_sin[0]);
+        pose.yaw_rad += fraction * walk->shapes->heading_change_rad[walk->shape];
+    }
+    else
+    {
+        pose = nav_arc_pose(&walk->start, &walk->arc, fraction);
+    }
     return pose;
 }
 
@@ -142,50 +187,26 @@ static nav_reason_t terrain_cost(const call_t *call, const nav_pose2_t *pose, do
     return reason;
 }
 
-/** Follows one arc of the tree: time, terrain, end at the waydisc. */
-static branch_t branch_follow(const call_t *call, const nav_pose2_t *start, uint32_t k)
+/** Follows an arc: time, terrain, end at the waydisc. An empty arc costs nothing. */
+static branch_t branch_follow(const call_t *call, const walk_t *walk)
 {
-    const nav_tree_shapes_t *shapes = call->scene->shapes;
-    const double cos_sin[2] = {nav_cos(start->yaw_rad), nav_sin(start->yaw_rad)};
-    const double spacing_m = call->params->tree_arc_length_m / (double) shapes->pose_count;
-    const nav_arc_t arc = tree_arc(call, k);
-    branch_t branch = {*start, 0.0, 0U, false, NAV_REASON_NONE};
+    branch_t branch = {walk->start, 0.0, 0U, false, NAV_REASON_NONE};
 
-    for (uint32_t place = 0U; (place < shapes->pose_count) && !branch.is_at_goal; place++)
+    for (uint32_t place = 0U; (place < walk->pose_count) && !branch.is_at_goal; place++)
     {
         double cost_s_per_m = 0.0;
-        branch.end = shape_pose(shapes, start, k, place, cos_sin);
+        branch.end = walk_pose(walk, place);
         const nav_reason_t reason = terrain_cost(call, &branch.end, &cost_s_per_m);
         branch.reason = (branch.reason == NAV_REASON_NONE) ? reason : branch.reason;
-        branch.cost_s += cost_s_per_m * spacing_m;
+        branch.cost_s += cost_s_per_m * walk->spacing_m;
         branch.is_at_goal = goal_distance_m(call, &branch.end) <= call->in->goal.radius_m;
         branch.pose_count = place + 1U;
     }
-    branch.cost_s += nav_arc_duration_s(call->params, &arc) * (double) branch.pose_count /
-                     (double) shapes->pose_count;
-    return branch;
-}
-
-/** Follows an arc of any length, as branch_follow does one of the tree; an empty arc costs nothing. */
-static branch_t arc_follow(const call_t *call, const nav_pose2_t *start, const nav_arc_t *arc)
-{
-    const uint32_t pose_count = nav_arc_pose_count(call->params, arc);
-    branch_t branch = {*start, 0.0, 0U, goal_distance_m(call, start) <= call->in->goal.radius_m,
-                       NAV_REASON_NONE};
-
-    for (uint32_t place = 0U;
-         (place < pose_count) && (arc->length_m > EMPTY_M) && !branch.is_at_goal; place++)
+    if (branch.pose_count > 0U)
     {
-        double cost_s_per_m = 0.0;
-        branch.end = nav_arc_pose(start, arc, (double) (place + 1U) / (double) pose_count);
-        const nav_reason_t reason = terrain_cost(call, &branch.end, &cost_s_per_m);
-        branch.reason = (branch.reason == NAV_REASON_NONE) ? reason : branch.reason;
-        branch.cost_s += cost_s_per_m * arc->length_m / (double) pose_count;
-        branch.is_at_goal = goal_distance_m(call, &branch.end) <= call->in->goal.radius_m;
-        branch.pose_count = place + 1U;
+        branch.cost_s += nav_arc_duration_s(call->params, &walk->arc) * (double) branch.pose_count /
+                         (double) walk->pose_count;
     }
-    branch.cost_s +=
-        nav_arc_duration_s(call->params, arc) * (double) branch.pose_count / (double) pose_count;
     return branch;
 }
 
@@ -269,7 +290,8 @@ static void rank_seconds(
         double cost_s = before_s + first->cost_s;
         if ((first->reason == NAV_REASON_NONE) && !first->is_at_goal)
         {
-            leaf = branch_follow(call, &first->end, k);
+            const walk_t walk = tree_walk(call, &first->end, k);
+            leaf = branch_follow(call, &walk);
             cost_s += steering_s(call, &steering, &next);
         }
         path_rank(call, tree, path, cost_s, &leaf);
@@ -299,12 +321,14 @@ static void rank_kept(call_t *call, nav_tree_t *tree)
                      nav_arc_duration_s(call->params, &kept->turn);
         }
         cost_s += steering_s(call, is_turn ? &in_place : &call->in->steering, &kept->first);
-        const branch_t first = arc_follow(call, &turned, &kept->first);
+        const walk_t along = arc_walk(call, &turned, &kept->first);
+        const branch_t first = branch_follow(call, &along);
         branch_t leaf = first;
         if ((first.reason == NAV_REASON_NONE) && !first.is_at_goal &&
             (kept->second.length_m > EMPTY_M))
         {
-            leaf = arc_follow(call, &first.end, &kept->second);
+            const walk_t onward = arc_walk(call, &first.end, &kept->second);
+            leaf = branch_follow(call, &onward);
             cost_s += first.cost_s + steering_s(call, &along_first, &kept->second);
         }
         path_rank(call, tree, KEPT, cost_s, &leaf);
@@ -329,7 +353,8 @@ static void rank(const call_t *call, nav_tree_t *tree)
         for (uint32_t k = 0U; k < ARCS; k++)
         {
             const nav_arc_t arc = tree_arc(call, k);
-            const branch_t first = branch_follow(call, &turned, k);
+            const walk_t walk = tree_walk(call, &turned, k);
+            const branch_t first = branch_follow(call, &walk);
             const nav_steering_t *steering = (turn > 0U) ? &in_place : &call->in->steering;
             rank_seconds(call, tree, (turn * ARCS) + k, &first,
                          turn_s + steering_s(call, steering, &arc));
@@ -469,59 +494,20 @@ static nav_reason_t test_pose(call_t *call,
     return reason;
 }
 
-static test_t test_turn(call_t *call, uint32_t turn)
+/** Tests an arc or turn that begins distance_m along the path, up to the waydisc. */
+static test_t test_walk(call_t *call, const walk_t *walk, double distance_m)
 {
-    const nav_arc_t arc = turn_arc(turn);
-    const uint32_t pose_count = (turn > 0U) ? nav_arc_pose_count(call->params, &arc) : 0U;
-    test_t test = {NAV_REASON_NONE, best_bounds()};
-    for (uint32_t k = 0U; (k < pose_count) && (test.reason == NAV_REASON_NONE); k++)
-    {
-        const nav_pose2_t pose =
-            nav_arc_pose(&call->start, &arc, (double) (k + 1U) / (double) pose_count);
-        test.reason = test_pose(call, &pose, 0.0, &test.bounds);
-    }
-    return test;
-}
-
-/** Tests an arc of the tree that begins distance_m along the path, up to the waydisc. */
-static test_t test_arc(call_t *call, const nav_pose2_t *start, uint32_t k, double distance_m)
-{
-    const nav_tree_shapes_t *shapes = call->scene->shapes;
-    const double cos_sin[2] = {nav_cos(start->yaw_rad), nav_sin(start->yaw_rad)};
-    const double spacing_m = call->params->tree_arc_length_m / (double) shapes->pose_count;
+    const bool is_turn = fabs(walk->arc.length_m) <= EMPTY_M;
     test_t test = {NAV_REASON_NONE, best_bounds()};
     bool is_at_goal = false;
 
     for (uint32_t place = 0U;
-         (place < shapes->pose_count) && (test.reason == NAV_REASON_NONE) && !is_at_goal; place++)
+         (place < walk->pose_count) && (test.reason == NAV_REASON_NONE) && !is_at_goal; place++)
     {
-        const nav_pose2_t pose = shape_pose(shapes, start, k, place, cos_sin);
-        test.reason =
-            test_pose(call, &pose, distance_m + ((double) (place + 1U) * spacing_m), &test.bounds);
-        is_at_goal = goal_distance_m(call, &pose) <= call->in->goal.radius_m;
-    }
-    return test;
-}
-
-/** Tests an arc of any length that begins distance_m along the path, up to the waydisc. */
-static test_t test_any_arc(call_t *call,
-                           const nav_pose2_t *start,
-                           const nav_arc_t *arc,
-                           double distance_m)
-{
-    const bool is_empty =
-        (fabs(arc->length_m) <= EMPTY_M) && (fabs(arc->heading_change_rad) <= EMPTY_M);
-    const uint32_t pose_count = is_empty ? 0U : nav_arc_pose_count(call->params, arc);
-    test_t test = {NAV_REASON_NONE, best_bounds()};
-    bool is_at_goal = false;
-    for (uint32_t place = 0U;
-         (place < pose_count) && (test.reason == NAV_REASON_NONE) && !is_at_goal; place++)
-    {
-        const double fraction = (double) (place + 1U) / (double) pose_count;
-        const nav_pose2_t pose = nav_arc_pose(start, arc, fraction);
-        test.reason = test_pose(call, &pose, distance_m + (fraction * arc->length_m), &test.bounds);
-        is_at_goal =
-            (arc->length_m > EMPTY_M) && (goal_distance_m(call, &pose) <= call->in->goal.radius_m);
+        const nav_pose2_t pose = walk_pose(walk, place);
+        test.reason = test_pose(call, &pose, distance_m + ((double) (place + 1U) * walk->spacing_m),
+                                &test.bounds);
+        is_at_goal = !is_turn && (goal_distance_m(call, &pose) <= call->in->goal.radius_m);
     }
     return test;
 }
@@ -530,17 +516,20 @@ static test_t test_any_arc(call_t *call,
 static test_t test_kept(call_t *call, const nav_path_t *kept)
 {
     const nav_pose2_t turned = nav_arc_pose(&call->start, &kept->turn, 1.0);
-    const branch_t first = arc_follow(call, &turned, &kept->first);
-    test_t test = test_any_arc(call, &call->start, &kept->turn, 0.0);
+    const walk_t turn = arc_walk(call, &call->start, &kept->turn);
+    const walk_t along = arc_walk(call, &turned, &kept->first);
+    const branch_t first = branch_follow(call, &along);
+    test_t test = test_walk(call, &turn, 0.0);
     if (test.reason == NAV_REASON_NONE)
     {
-        const test_t next = test_any_arc(call, &turned, &kept->first, 0.0);
+        const test_t next = test_walk(call, &along, 0.0);
         test.reason = next.reason;
         worsen(&test.bounds, &next.bounds);
     }
     if ((test.reason == NAV_REASON_NONE) && !first.is_at_goal)
     {
-        const test_t next = test_any_arc(call, &first.end, &kept->second, kept->first.length_m);
+        const walk_t onward = arc_walk(call, &first.end, &kept->second);
+        const test_t next = test_walk(call, &onward, kept->first.length_m);
         test.reason = next.reason;
         worsen(&test.bounds, &next.bounds);
     }
@@ -554,11 +543,13 @@ static test_t test_path(call_t *call, nav_tree_t *tree, uint32_t path)
     const uint32_t turn = node / ARCS;
     const nav_arc_t turning = turn_arc(turn);
     const nav_pose2_t turned = nav_arc_pose(&call->start, &turning, 1.0);
+    const walk_t along = tree_walk(call, &turned, node % ARCS);
     test_t test = {(nav_reason_t) tree->turn_verdict[turn], tree->turn_bounds[turn]};
 
     if (tree->turn_verdict[turn] == (uint8_t) NAV_TREE_UNTESTED)
     {
-        test = test_turn(call, turn);
+        const walk_t walk = arc_walk(call, &call->start, &turning);
+        test = test_walk(call, &walk, 0.0);
         tree->turn_verdict[turn] = (uint8_t) test.reason;
         tree->turn_bounds[turn] = test.bounds;
     }
@@ -566,7 +557,7 @@ static test_t test_path(call_t *call, nav_tree_t *tree, uint32_t path)
     {
         if (tree->first_verdict[node] == (uint8_t) NAV_TREE_UNTESTED)
         {
-            test = test_arc(call, &turned, node % ARCS, 0.0);
+            test = test_walk(call, &along, 0.0);
             tree->first_verdict[node] = (uint8_t) test.reason;
             worsen(&test.bounds, &tree->turn_bounds[turn]);
             tree->first_bounds[node] = test.bounds;
@@ -576,10 +567,11 @@ static test_t test_path(call_t *call, nav_tree_t *tree, uint32_t path)
     }
     if (test.reason == NAV_REASON_NONE)
     {
-        const branch_t first = branch_follow(call, &turned, node % ARCS);
+        const branch_t first = branch_follow(call, &along);
         if (!first.is_at_goal)
         {
-            test = test_arc(call, &first.end, path % ARCS, call->params->tree_arc_length_m);
+            const walk_t onward = tree_walk(call, &first.end, path % ARCS);
+            test = test_walk(call, &onward, call->params->tree_arc_length_m);
             worsen(&test.bounds, &tree->first_bounds[node]);
         }
         tree->second_verdict[path] = (uint8_t) test.reason;
@@ -736,17 +728,12 @@ static nav_path_t rest_of_path(const call_t *call, const nav_path_t *path, const
     return rest;
 }
 
-/** Adds the poses of an arc to the shown path, up to the waydisc. */
-static void show_arc(const branch_t *branch,
-                     const nav_pose2_t *start,
-                     const nav_arc_t *arc,
-                     const call_t *call,
-                     nav_select_arc_out_t *out)
+/** Adds the poses that a branch drives to the shown path. */
+static void show_walk(const walk_t *walk, const branch_t *branch, nav_select_arc_out_t *out)
 {
-    const double pose_count = (double) nav_arc_pose_count(call->params, arc);
     for (uint32_t place = 0U; place < branch->pose_count; place++)
     {
-        const nav_pose2_t pose = nav_arc_pose(start, arc, (double) (place + 1U) / pose_count);
+        const nav_pose2_t pose = walk_pose(walk, place);
         add_point(out, &pose);
     }
 }
@@ -756,16 +743,18 @@ static void show_path(const call_t *call, nav_tree_t *tree, nav_select_arc_out_t
 {
     const nav_path_t path = selected_path(call, tree, out->path_index);
     const nav_pose2_t turned = nav_arc_pose(&call->start, &path.turn, 1.0);
-    const branch_t first = arc_follow(call, &turned, &path.first);
+    const walk_t along = arc_walk(call, &turned, &path.first);
+    const branch_t first = branch_follow(call, &along);
     branch_t leaf = first;
     double to_go_s = 0.0;
 
     add_point(out, &call->start);
-    show_arc(&first, &turned, &path.first, call, out);
+    show_walk(&along, &first, out);
     if (!first.is_at_goal)
     {
-        leaf = arc_follow(call, &first.end, &path.second);
-        show_arc(&leaf, &first.end, &path.second, call, out);
+        const walk_t onward = arc_walk(call, &first.end, &path.second);
+        leaf = branch_follow(call, &onward);
+        show_walk(&onward, &leaf, out);
     }
     (void) leaf_cost(call, &leaf, &to_go_s);
     out->arc = executed_arc(call, &path, &first);

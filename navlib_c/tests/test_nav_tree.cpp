@@ -109,6 +109,16 @@ TEST(Tree, a_path_ends_where_it_enters_the_waydisc)
     EXPECT_EQ(0U, out->global_point_count);
 }
 
+TEST(Tree, a_rover_that_stands_in_the_waydisc_is_not_given_an_empty_arc)
+{
+    Scene scene;
+    scene.goal = {0.2, 0.0, 1.0};
+    scene.show(flat);
+    const auto out = scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_GT(out->arc.length_m + std::fabs(out->arc.heading_change_rad), 0.1);
+    EXPECT_GE(out->path_point_count, 2U);
+}
+
 TEST(Tree, paths_that_lead_away_are_rejected_as_negative_progress)
 {
     Scene scene([](nav_params_t &params) { params.negative_progress_max_m = 1.0; });
