@@ -148,6 +148,18 @@ inline double flat(double, double)
     return 0.0;
 }
 
+/// A round zone.
+inline nav_zone_t circle(nav_zone_kind_t kind, double x_m, double y_m, double radius_m)
+{
+    nav_zone_t zone = {};
+    zone.kind = kind;
+    zone.shape = NAV_ZONE_CIRCLE;
+    zone.center_x_site_m = x_m;
+    zone.center_y_site_m = y_m;
+    zone.radius_m = radius_m;
+    return zone;
+}
+
 constexpr double DEG = 3.14159265358979323846 / 180.0;
 
 /// Height at which a predicate turns from true to false, between low and high.

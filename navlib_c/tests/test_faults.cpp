@@ -35,17 +35,6 @@ double above(double x)
     return std::nextafter(x, INF);
 }
 
-nav_zone_t circle(nav_zone_kind_t kind, double x_m, double y_m, double radius_m)
-{
-    nav_zone_t zone = {};
-    zone.kind = kind;
-    zone.shape = NAV_ZONE_CIRCLE;
-    zone.center_x_site_m = x_m;
-    zone.center_y_site_m = y_m;
-    zone.radius_m = radius_m;
-    return zone;
-}
-
 /// A scene on flat ground, and one valid input of each call.
 class Faults : public ::testing::Test
 {

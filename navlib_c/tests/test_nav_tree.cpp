@@ -17,17 +17,6 @@ bool is_rock(double x_m, double y_m, double x, double y, double radius)
     return std::hypot(x_m - x, y_m - y) < radius;
 }
 
-nav_zone_t circle(nav_zone_kind_t kind, double x_m, double y_m, double radius_m)
-{
-    nav_zone_t zone = {};
-    zone.kind = kind;
-    zone.shape = NAV_ZONE_CIRCLE;
-    zone.center_x_site_m = x_m;
-    zone.center_y_site_m = y_m;
-    zone.radius_m = radius_m;
-    return zone;
-}
-
 TEST(Tree, on_flat_ground_the_straight_path_is_selected_and_one_metre_of_it_driven)
 {
     Scene scene;
