@@ -312,7 +312,7 @@ def test_a_guess_in_python_serves_like_one_in_a_chain(
     settler = Settler(rocky, vehicle)
     poses = np.array([[1.0, 2.0, 0.3], [1.0 + shift_m, 2.0, 0.3]])
     chained = settler.settle_many(poses, chained=True)[1]
-    guessed = settler.settle(*poses[1], guess=settler.settle(*poses[0]))
+    guessed = settler.settle(1.0 + shift_m, 2.0, 0.3, guess=settler.settle(1.0, 2.0, 0.3))
     assert (guessed.z_m, guessed.iterations) == (chained["z_m"], chained["iterations"])
 
 
