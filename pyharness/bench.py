@@ -232,20 +232,17 @@ def bench_select_arc(bench: Bench) -> Result:
     return Result("select_arc", 1e3 * best_of(select), "ms")
 
 
-def bench_settle_warm(bench: Bench) -> Result:
-    """Settle along a curved 20 m drive at 8 Hz; the reference solves the linkage alone."""
+def bench_settle_warm(bench: Bench) -> Iterator[Result]:
+    """Settle along 20 m at 8 Hz; the reference solves the linkage alone."""
     settler = Settler(bench.terrain, bench.vehicle)
     along_m = np.arange(0.0, 20.0, STEP_M)
-    yaw_rad = 0.1 * along_m
-    poses = np.column_stack(
-        [
-            np.cumsum(np.cos(yaw_rad)) * STEP_M - 5.0,
-            np.cumsum(np.sin(yaw_rad)) * STEP_M,
-            yaw_rad,
-        ]
-    )
-    value_s = best_of(lambda: settler.settle_many(poses, chained=True))
-    return compared("settle_warm", 1e6 * value_s / len(poses), "us", "scipy root", _root_us(bench))
+    reference_us = _root_us(bench)
+    for name, curvature_1_m in (("settle_warm", 0.0), ("settle_warm_curve", 0.1)):
+        yaw_rad = curvature_1_m * along_m
+        north_m, east_m = (np.cumsum(turn(yaw_rad)) * STEP_M for turn in (np.cos, np.sin))
+        poses = np.column_stack([north_m - 5.0, east_m, yaw_rad])
+        value_s = best_of(partial(settler.settle_many, poses, chained=True))
+        yield compared(name, 1e6 * value_s / len(poses), "us", "scipy root", reference_us)
 
 
 def bench_world_step(bench: Bench) -> Result:
@@ -377,7 +374,7 @@ def main() -> None:
         bench_analyze_terrain(bench),
         bench_dijkstra(bench),
         bench_select_arc(bench),
-        bench_settle_warm(bench),
+        *bench_settle_warm(bench),
         bench_world_step(bench),
         *bench_raycast(bench),
         *bench_drive_80m(bench),

@@ -209,9 +209,30 @@ def load_scenario(path: Path | None, overrides: Mapping[str, object]) -> Scenari
     Raises:
         ConfigError: With one line for every fault.
     """
+    folder = Path() if path is None else path.parent
+    parts = {key: value for key, value in overrides.items() if key.startswith("vehicle.")}
+    if parts:
+        overrides = {key: value for key, value in overrides.items() if key not in parts}
+        # parts of a vehicle that is named can be set once it is spelled out
+        vehicle = _read(path, overrides).vehicle
+        if isinstance(vehicle, str):
+            spelled_out = _named_vehicle(vehicle, folder, overrides).model_dump(mode="json")
+            overrides = {**overrides, "vehicle": spelled_out}
+        overrides = {**overrides, **parts}
+    return _resolve(_read(path, overrides), folder, overrides)
+
+
+def _read(path: Path | None, overrides: Mapping[str, object]) -> Scenario:
     if path is None:
-        return _resolve(parse_model("", "scenario", Scenario, overrides), Path(), overrides)
-    return _resolve(load_model(path, Scenario, overrides), path.parent, overrides)
+        return parse_model("", "scenario", Scenario, overrides)
+    return load_model(path, Scenario, overrides)
+
+
+def _named_vehicle(name: str, folder: Path, overrides: Mapping[str, object]) -> Vehicle:
+    """Vehicle of a file, or a built-in one."""
+    if not name.endswith((".yaml", ".yml")):
+        return load_vehicle(name)
+    return load_vehicle((Path() if "vehicle" in overrides else folder) / name)
 
 
 def check_places(
@@ -269,9 +290,7 @@ def _resolve(scenario: Scenario, folder: Path, overrides: Mapping[str, object]) 
     terrain_folder = Path() if is_terrain_override else folder
     vehicle = scenario.vehicle
     if isinstance(vehicle, str):
-        vehicle_folder = Path() if "vehicle" in overrides else folder
-        is_file = vehicle.endswith((".yaml", ".yml"))
-        vehicle = load_vehicle(vehicle_folder / vehicle if is_file else vehicle)
+        vehicle = _named_vehicle(vehicle, folder, overrides)
     given = {name: value for name, value in scenario.navlib if value is not None}
     level = {"product_level": PRODUCT_LEVELS[scenario.records]}
     params = param_values({**vehicle_params(vehicle), **level, **given})

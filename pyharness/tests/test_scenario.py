@@ -117,6 +117,34 @@ def test_the_seed_drives_the_terrain_unless_that_has_its_own():
     assert load_scenario(None, {"seed": 9, "terrain.seed": 2}).terrain.seed == 2
 
 
+@pytest.mark.parametrize("text", ["", "vehicle: perseverance", "vehicle: mine.yaml", "inline"])
+def test_a_part_of_any_vehicle_can_be_set(tmp_path, text):
+    mine = dump_model(load_vehicle(overrides={"name": "mine"}))
+    (tmp_path / "mine.yaml").write_text(mine)
+    if text == "inline":
+        text = "vehicle:\n" + "".join(f"  {line}\n" for line in mine.splitlines())
+    path = tmp_path / "s.yaml"
+    path.write_text(text)
+    scenario = load_scenario(path, {"vehicle.settling.wheel": "cylinder"})
+    assert scenario.vehicle.settling.wheel == "cylinder"
+    assert scenario.vehicle.name == (
+        "mine" if "perseverance" not in text and text else "perseverance"
+    )
+    plain = load_scenario(path, {})
+    assert scenario.vehicle.geometry == plain.vehicle.geometry
+    assert plain.vehicle.settling.wheel == "disc"
+
+
+def test_a_bad_part_of_a_vehicle_is_one_line(tmp_path):
+    (problem,) = problems(tmp_path, "", {"vehicle.settling.wheel": "ball"})
+    assert problem == (
+        "--set vehicle.settling.wheel: expected one of point, disc, cylinder, got 'ball'"
+        " (known: point, disc, cylinder)"
+    )
+    (problem,) = problems(tmp_path, "", {"vehicle.settling.weel": "disc"})
+    assert problem == "--set vehicle.settling.weel: unknown key, did you mean 'wheel'?"
+
+
 def test_the_vehicle_tells_navlib_its_geometry_and_limits():
     given = vehicle_params(load_vehicle())
     defaults = param_values({})
