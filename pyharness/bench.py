@@ -24,6 +24,7 @@ from pyharness import messages
 from pyharness.clib import ffi, lib
 from pyharness.drive import drive
 from pyharness.history import History
+from pyharness.layout import dtype_of
 from pyharness.messages import Arc, Pose6, Uncertainty
 from pyharness.navlib import Navlib
 from pyharness.planners.enav import Enav
@@ -188,35 +189,40 @@ def bench_analyze_terrain(bench: Bench) -> Result:
 
 
 def bench_dijkstra(bench: Bench) -> Result:
-    """Compute the cost-to-go of every costmap cell."""
+    """Compute the cost-to-go of every costmap cell; the reference finds the same costs."""
     navlib, pose = bench.mapped()
     navlib.analyze_terrain(messages.analyze_request(0.0, pose, GOAL, 0.1))
     lib.nav_stub_clear()
     ctx = navlib.context
+    cells = np.frombuffer(ffi.buffer(ctx.costmap.cells), dtype_of("nav_cost_cell_t"))
+    cells["terrain_reason"] = 0
+    cells["cost_s_per_m"] = np.random.default_rng(1).uniform(20.0, 60.0, len(cells))
     goal = ffi.new(
         "nav_waydisc_t *", {"x_site_m": -20.0, "y_site_m": 0.0, "radius_m": GOAL.radius_m}
     )
+    costmap, planner = ffi.addressof(ctx, "costmap"), ffi.addressof(ctx, "global")
 
     def plan() -> None:
-        lib.nav_global_plan(
-            ffi.addressof(ctx, "global"),
-            ffi.addressof(ctx, "costmap"),
-            ffi.addressof(ctx, "params"),
-            goal,
-            True,
-            True,
-        )
+        lib.nav_global_plan(planner, costmap, ffi.addressof(ctx, "params"), goal, True, True)
 
-    return compared("dijkstra", 1e3 * best_of(plan), "ms", "skimage MCP_Geometric", _mcp_ms())
+    value_ms = 1e3 * best_of(plan)
+    found_s = np.frombuffer(ffi.buffer(planner.cost_to_go_s), np.float64)
+    side = lib.NAV_COSTMAP_SIZE
+    found_s = found_s.reshape(side + 2, side + 2)[1:-1, 1:-1]
+    costs_s = cells["cost_s_per_m"].reshape(side, side).astype(np.float64) * ctx.costmap.cell_m
+    return compared("dijkstra", value_ms, "ms", "skimage MCP_Geometric", _mcp_ms(costs_s, found_s))
 
 
-def _mcp_ms() -> float | None:
+def _mcp_ms(costs_s: npt.NDArray[np.float64], expected_s: npt.NDArray[np.float64]) -> float | None:
+    """Time the reference from the same cells; it must find the same costs."""
     try:
         from skimage.graph import MCP_Geometric  # type: ignore[import-not-found,unused-ignore]
     except ImportError:
         return None
-    costs = np.random.default_rng(1).uniform(20.0, 60.0, (100, 100))
-    return 1e3 * best_of(lambda: MCP_Geometric(costs).find_costs([(50, 80)]))
+    starts = np.argwhere(expected_s == 0.0)
+    found_s, _ = MCP_Geometric(costs_s).find_costs(starts)
+    assert np.allclose(found_s, expected_s, rtol=1e-9), "Dijkstra and its reference disagree"
+    return 1e3 * best_of(lambda: MCP_Geometric(costs_s).find_costs(starts))
 
 
 def bench_select_arc(bench: Bench) -> Result:
