@@ -52,8 +52,11 @@ GOAL = Waypoint(40.0, 0.0, 2.0, "avoid_all")
 CERTAIN = Uncertainty(0.03, 0.005, 0.1)
 OUTPUT = Path("build/bench.json")
 
+# The least that any merging must do. `bin_site` is given points that stand in the map's frame
+# already; `bin_rover` is given what Navlib is given. Neither checks its input, knows a map that
+# rolls, tells images apart or copies data products.
 BINNING_C = """
-void bin(const float *points, int count, float *sum, int *hits)
+void bin_site(const float *points, int count, double *sum, int *hits)
 {
     for (int i = 0; i < count; ++i)
     {
@@ -66,6 +69,25 @@ void bin(const float *points, int count, float *sum, int *hits)
         }
     }
 }
+void bin_rover(const float *points, int count, const double *to, double *sum, int *hits)
+{
+    for (int i = 0; i < count; ++i)
+    {
+        const double x = points[3 * i], y = points[3 * i + 1], z = points[3 * i + 2];
+        const double row = to[0] * x + to[1] * y + to[2] * z + to[3];
+        const double col = to[4] * x + to[5] * y + to[6] * z + to[7];
+        if ((row >= 0.0) && (row < 300.0) && (col >= 0.0) && (col < 300.0))
+        {
+            const int cell = 300 * (int) row + (int) col;
+            sum[cell] += to[8] * x + to[9] * y + to[10] * z + to[11];
+            hits[cell] += 1;
+        }
+    }
+}
+"""
+BINNING_CDEF = """
+void bin_site(const float *points, int count, double *sum, int *hits);
+void bin_rover(const float *points, int count, const double *to, double *sum, int *hits);
 """
 
 
@@ -119,31 +141,55 @@ class Bench:
         return navlib, pose
 
 
-def bench_process_disparity(bench: Bench) -> Result:
-    """Merge a cloud; the reference only bins it."""
+def bench_process_disparity(bench: Bench) -> Iterator[Result]:
+    """Merge a cloud in chunks, as C calls of Navlib that send their data products to the stubs.
+
+    The rows after the first tell what else could be counted: a reference that need not turn the
+    points, what the stubs' copies of the data products take, the calls from Python.
+    """
     rng = np.random.default_rng(1)
     points_m = rng.uniform((-15, -15, -1), (15, 15, 1), (POINTS, 3)).astype(np.float32)
     level = Pose6(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     requests = [
         list(messages.cloud_requests(0.0, level, image_id, points_m))
-        for image_id in range(1, REPEATS + 1)
+        for image_id in range(1, 3 * REPEATS + 1)
     ]
     navlib = Navlib(navlib_params(bench.scenario))
-    images = iter(requests)
+    answer = ffi.new("nav_process_disparity_out_t *")
+    in_c = [
+        [ffi.from_buffer("nav_process_disparity_in_t *", request) for request in image]
+        for image in requests
+    ]
+    images, images_python = iter(in_c[: 2 * REPEATS]), iter(requests[2 * REPEATS :])
 
     def merge() -> None:
-        for request in next(images):
-            navlib.process_disparity(request)
+        for chunk in next(images):
+            lib.nav_process_disparity(navlib.context, chunk, answer)
             lib.nav_stub_clear()
 
-    value_s = best_of(merge)
-    return compared(
-        "process_disparity", 1e3 * value_s, "ms", "plain C binning", _binning_ms(points_m + 15)
-    )
+    def merge_python() -> None:
+        for request in next(images_python):
+            navlib.process_disparity(request)
+            for _ in navlib.drain():
+                pass
+
+    def send() -> None:
+        for request, chunk in zip(requests[0], in_c[0], strict=True):
+            used = request.nbytes - 12 * (lib.NAV_CHUNK_POINTS_MAX - int(request["point_count"]))
+            lib.nav_dp_send(lib.NAV_DP_PROCESS_DISPARITY_IN, 0.0, chunk, used)
+            lib.nav_stub_clear()
+
+    value_ms = 1e3 * best_of(merge, 2 * REPEATS)
+    site_ms, rover_ms = _binning_ms(points_m) or (None, None)
+    name = "process_disparity"
+    yield compared(name, value_ms, "ms", "C loop: turn and bin", rover_ms)
+    yield compared(f"{name}_floor", value_ms, "ms", "C loop: bin turned points", site_ms)
+    yield Result(f"{name}_copies", 1e3 * best_of(send), "ms")
+    yield Result(f"{name}_python", 1e3 * best_of(merge_python), "ms")
 
 
-def _binning_ms(points_m: npt.NDArray[np.float32]) -> float | None:
-    """Compile and time the loop that any such function must at least run."""
+def _binning_ms(points_m: npt.NDArray[np.float32]) -> tuple[float, float] | None:
+    """Compile and time the two loops."""
     from cffi import FFI
 
     with tempfile.TemporaryDirectory() as folder:
@@ -153,16 +199,19 @@ def _binning_ms(points_m: npt.NDArray[np.float32]) -> float | None:
         if subprocess.run(command, check=False).returncode != 0:
             return None
         plain: Any = FFI()
-        plain.cdef("void bin(const float *points, int count, float *sum, int *hits);")
-        function = plain.dlopen(str(library)).bin
-        total, hits = np.zeros(90_000, np.float32), np.zeros(90_000, np.int32)
-        arguments = (
-            plain.from_buffer("float[]", points_m),
-            len(points_m),
-            plain.from_buffer("float[]", total),
-            plain.from_buffer("int[]", hits),
+        plain.cdef(BINNING_CDEF)
+        loops = plain.dlopen(str(library))
+        points = plain.from_buffer("float[]", points_m)
+        moved = plain.from_buffer("float[]", points_m + np.float32(15.0))
+        sums = plain.from_buffer("double[]", np.zeros(90_000))
+        hits = plain.from_buffer("int[]", np.zeros(90_000, np.int32))
+        to = plain.from_buffer(
+            "double[]", np.array([10.0, 0, 0, 150, 0, 10.0, 0, 150, 0, 0, 1.0, 0])
         )
-        return 1e3 * best_of(lambda: function(*arguments))
+        count = len(points_m)
+        site_s = best_of(lambda: loops.bin_site(moved, count, sums, hits), 2 * REPEATS)
+        rover_s = best_of(lambda: loops.bin_rover(points, count, to, sums, hits), 2 * REPEATS)
+        return 1e3 * site_s, 1e3 * rover_s
 
 
 def bench_analyze_terrain(bench: Bench) -> Result:
@@ -379,7 +428,7 @@ def main() -> None:
     assert isinstance(vehicle, Vehicle)
     bench = Bench(scenario, make_terrain(scenario), vehicle)
     results = [
-        bench_process_disparity(bench),
+        *bench_process_disparity(bench),
         bench_analyze_terrain(bench),
         bench_dijkstra(bench),
         bench_select_arc(bench),
@@ -397,7 +446,7 @@ def main() -> None:
 
 
 def _line(result: Result) -> str:
-    text = f"{result.name:<20} {result.value:10.3f} {result.unit:<12}"
+    text = f"{result.name:<24} {result.value:10.3f} {result.unit:<12}"
     if result.reference_value is None or result.ratio is None:
         return text.rstrip() + "\n"
     return f"{text} {result.reference_value:10.3f} {result.reference}, ratio {result.ratio:.3f}\n"

@@ -61,7 +61,7 @@ bool nav_heightmap_center(nav_heightmap_t *map, double x_site_m, double y_site_m
 
 /**
  * Merges points given in ROVER at the pose. The points must be finite (the interface has checked).
- * Points outside the map are counted and dropped.
+ * Points outside the map are counted and dropped. Which cell takes a point is decided to 1e-12 cells.
  */
 nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
                                 const nav_pose_t *pose,

@@ -13,19 +13,42 @@
 #define NAV_SIZE ((int32_t) NAV_HEIGHTMAP_SIZE)
 #define NAV_CELL_POINTS_MAX 65535U
 
-/* Rotation from ROVER to SITE, row by row. */
-typedef struct
-{
-    double r[3][3];
-} nav_rotation_t;
+/* Points placed in one go. The loops over a batch have this fixed length and no branches, so that
+ * compilers turn them into instructions for several numbers at once. */
+#define NAV_BATCH 32U
 
-/* One axis of the map: where its first global index is stored. */
+/* Not a place on the map. */
+#define NAV_OUTSIDE (-1)
+
+/* A coordinate of a point is linear in its coordinates in ROVER. */
 typedef struct
 {
-    double low;       /* first global index */
-    double high;      /* one past the last */
-    int32_t to_start; /* what turns a global index into a storage index, but for one size */
-} nav_axis_t;
+    double x;
+    double y;
+    double z;
+    double offset;
+} nav_direction_t;
+
+/* From ROVER to cells north and east of the map's corner, not rounded, and to metres down in SITE. */
+typedef struct
+{
+    nav_direction_t row;
+    nav_direction_t col;
+    nav_direction_t down;
+    int32_t first_row; /* where the southernmost row is stored */
+    int32_t first_col; /* where the westernmost column is stored */
+} nav_placing_t;
+
+typedef struct
+{
+    double x_m[NAV_BATCH]; /* ROVER */
+    double y_m[NAV_BATCH];
+    double z_m[NAV_BATCH];
+    double place[NAV_BATCH]; /* cells from the map's corner along one axis */
+    double down_m[NAV_BATCH];
+    int32_t row[NAV_BATCH]; /* of storage, or NAV_OUTSIDE */
+    int32_t col[NAV_BATCH];
+} nav_batch_t;
 
 /* Known heights of three cells, one above the other. */
 typedef struct
@@ -34,8 +57,16 @@ typedef struct
     double known_count;
 } nav_column_t;
 
-static nav_rotation_t rotation_of_pose(const nav_pose_t *pose)
+static nav_direction_t scaled(double scale, double x, double y, double z, double offset)
 {
+    const nav_direction_t direction = {scale * x, scale * y, scale * z, offset};
+
+    return direction;
+}
+
+static nav_placing_t placing_at(const nav_heightmap_t *map, const nav_pose_t *pose)
+{
+    const double cells_per_m = 1.0 / map->cell_m;
     const double cr = nav_cos(pose->roll_rad);
     const double sr = nav_sin(pose->roll_rad);
     const double cp = nav_cos(pose->pitch_rad);
@@ -43,60 +74,87 @@ static nav_rotation_t rotation_of_pose(const nav_pose_t *pose)
     const double cy = nav_cos(pose->yaw_rad);
     const double sy = nav_sin(pose->yaw_rad);
     /* Rz(yaw) Ry(pitch) Rx(roll) */
-    const nav_rotation_t rotation = {
-        {{cy * cp, (cy * sp * sr) - (sy * cr), (cy * sp * cr) + (sy * sr)},
-         {sy * cp, (sy * sp * sr) + (cy * cr), (sy * sp * cr) - (cy * sr)},
-         {-sp, cp * sr, cp * cr}}};
+    const nav_placing_t placing = {
+        scaled(cells_per_m, cy * cp, (cy * sp * sr) - (sy * cr), (cy * sp * cr) + (sy * sr),
+               (cells_per_m * pose->x_site_m) - (double) map->origin_row),
+        scaled(cells_per_m, sy * cp, (sy * sp * sr) + (cy * cr), (sy * sp * cr) - (cy * sr),
+               (cells_per_m * pose->y_site_m) - (double) map->origin_col),
+        scaled(1.0, -sp, cp * sr, cp * cr, pose->z_site_m),
+        nav_wrap_index(map->origin_row, NAV_SIZE), nav_wrap_index(map->origin_col, NAV_SIZE)};
 
-    return rotation;
+    return placing;
 }
 
-static double rotated(const nav_point_t *point, const double row[3])
+static void spread(nav_batch_t *batch, const nav_point_t *points, uint32_t count)
 {
-    return (row[0] * (double) point->x_m) + (row[1] * (double) point->y_m) +
-           (row[2] * (double) point->z_m);
+    for (uint32_t point = 0U; point < count; point++)
+    {
+        batch->x_m[point] = (double) points[point].x_m;
+        batch->y_m[point] = (double) points[point].y_m;
+        batch->z_m[point] = (double) points[point].z_m;
+    }
 }
 
-static nav_axis_t axis_from(int32_t origin)
+static void place_along(const nav_batch_t *batch, const nav_direction_t *to, double *place)
 {
-    const nav_axis_t axis = {(double) origin, (double) origin + (double) NAV_HEIGHTMAP_SIZE,
-                             nav_wrap_index(origin, NAV_SIZE) - origin};
-
-    return axis;
+    for (uint32_t point = 0U; point < NAV_BATCH; point++)
+    {
+        place[point] = ((to->x * batch->x_m[point]) + (to->y * batch->y_m[point])) +
+                       ((to->z * batch->z_m[point]) + to->offset);
+    }
 }
 
-/* floor() of a number known to lie in the axis, as a storage index */
-static int32_t storage_index(const nav_axis_t *axis, double scaled)
+static void store_along(const double *place, int32_t first, int32_t *stored)
 {
-    const int32_t truncated = (int32_t) scaled;
-    const int32_t global = truncated - ((scaled < (double) truncated) ? 1 : 0);
-    const int32_t stored = global + axis->to_start;
+    for (uint32_t point = 0U; point < NAV_BATCH; point++)
+    {
+        const double from_low = (place[point] >= 0.0) ? place[point] : (double) NAV_OUTSIDE;
+        const double inside =
+            (from_low < (double) NAV_HEIGHTMAP_SIZE) ? from_low : (double) NAV_OUTSIDE;
+        /* not negative on the map: truncation is floor() */
+        const int32_t index = (int32_t) inside;
+        const int32_t turned = index + first;
+        const int32_t wrapped = (turned >= NAV_SIZE) ? (turned - NAV_SIZE) : turned;
 
-    return (stored >= NAV_SIZE) ? (stored - NAV_SIZE) : stored;
+        stored[point] = (index >= 0) ? wrapped : NAV_OUTSIDE;
+    }
 }
 
-/* @return 1 when the point was taken, 0 when the cell is full */
+static void place_points(nav_batch_t *batch, const nav_placing_t *placing)
+{
+    place_along(batch, &placing->row, batch->place);
+    store_along(batch->place, placing->first_row, batch->row);
+    place_along(batch, &placing->col, batch->place);
+    store_along(batch->place, placing->first_col, batch->col);
+    place_along(batch, &placing->down, batch->down_m);
+}
+
+/* All bits when two numbers are equal, none otherwise. */
+static uint32_t mask_of_equal(uint32_t a, uint32_t b)
+{
+    const uint32_t difference = a ^ b;
+
+    return ((difference | (0U - difference)) >> 31U) - 1U;
+}
+
+/*
+ * Without a branch on the image: which points are the first of their cells cannot be predicted.
+ * @return 1 when the point was taken, 0 when the cell is full
+ */
 static uint32_t add_to_cell(nav_height_cell_t *cell, double z_m, double time_s, uint32_t image_id)
 {
-    uint32_t taken = 1U;
+    const uint32_t mask = mask_of_equal(cell->image_id, image_id);
+    const uint32_t count = mask & cell->point_count;
+    const bool is_taken = count < NAV_CELL_POINTS_MAX;
 
-    if ((cell->point_count == 0U) || (cell->image_id != image_id))
+    if (is_taken)
     {
-        cell->z_sum_m = z_m;
+        cell->z_sum_m = ((double) (mask & 1U) * cell->z_sum_m) + z_m;
         cell->time_s = time_s;
         cell->image_id = image_id;
-        cell->point_count = 1U;
+        cell->point_count = count + 1U;
     }
-    else if (cell->point_count < NAV_CELL_POINTS_MAX)
-    {
-        cell->z_sum_m += z_m;
-        cell->point_count += 1U;
-    }
-    else
-    {
-        taken = 0U;
-    }
-    return taken;
+    return is_taken ? 1U : 0U;
 }
 
 static void clear_rows(nav_heightmap_t *map, int32_t first_row, int32_t row_count)
@@ -274,30 +332,34 @@ nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
                                 const nav_point_t *points,
                                 uint32_t point_count)
 {
-    const nav_axis_t rows = axis_from(map->origin_row);
-    const nav_axis_t cols = axis_from(map->origin_col);
-    const double cells_per_m = 1.0 / map->cell_m;
+    const nav_placing_t placing = placing_at(map, pose);
+    const uint32_t capacity = (uint32_t) NAV_CHUNK_POINTS_MAX;
+    const uint32_t total = (point_count < capacity) ? point_count : capacity;
     nav_merge_t merge = {0U, 0U};
-    nav_rotation_t rotation;
+    nav_batch_t batch;
 
-    rotation = rotation_of_pose(pose);
-    for (uint32_t point = 0U; (point < point_count) && (point < (uint32_t) NAV_CHUNK_POINTS_MAX);
-         point++)
+    (void) memset(&batch, 0, sizeof(batch)); /* what no point fills is placed as well */
+    for (uint32_t first = 0U; first < total; first += NAV_BATCH)
     {
-        const double row = cells_per_m * (pose->x_site_m + rotated(&points[point], rotation.r[0]));
-        const double col = cells_per_m * (pose->y_site_m + rotated(&points[point], rotation.r[1]));
+        const uint32_t rest = total - first;
+        const uint32_t count = (rest < NAV_BATCH) ? rest : NAV_BATCH;
 
-        if ((row >= rows.low) && (row < rows.high) && (col >= cols.low) && (col < cols.high))
+        spread(&batch, &points[first], count);
+        place_points(&batch, &placing);
+        for (uint32_t point = 0U; point < count; point++)
         {
-            const double z_m = pose->z_site_m + rotated(&points[point], rotation.r[2]);
-            const int32_t index =
-                (storage_index(&rows, row) * NAV_SIZE) + storage_index(&cols, col);
+            const int32_t row = batch.row[point];
+            const int32_t col = batch.col[point];
 
-            merge.merged_count += add_to_cell(&map->cells[index], z_m, time_s, image_id);
-        }
-        else
-        {
-            merge.outside_count += 1U;
+            if ((row == NAV_OUTSIDE) || (col == NAV_OUTSIDE))
+            {
+                merge.outside_count += 1U;
+            }
+            else
+            {
+                merge.merged_count += add_to_cell(&map->cells[(row * NAV_SIZE) + col],
+                                                  batch.down_m[point], time_s, image_id);
+            }
         }
     }
     return merge;

@@ -26,11 +26,6 @@
     ((uint32_t) (offsetof(type, last) + (sizeof(((type *) NULL)->last[0]) *                        \
                                          (size_t) (((count) < (max)) ? (count) : (max)))))
 
-static bool is_within(double x, double limit)
-{
-    return nav_isfinite(x) && (fabs(x) <= limit);
-}
-
 /** NOT_FINITE for a NaN or infinity, OUT_OF_RANGE beyond [low, high]. */
 static nav_status_t check_range(double x, double low, double high)
 {
@@ -261,16 +256,27 @@ static nav_status_t check_point(const nav_point_t *point)
     return first_error(checks, 3U);
 }
 
+/** Whether all points are near and finite; one sum and comparison for each, false for a NaN. */
+static bool are_near(const nav_point_t *points, uint32_t count)
+{
+    uint32_t far_count = 0U;
+    for (uint32_t k = 0U; k < count; k++)
+    {
+        const float sum_m = fabsf(points[k].x_m) + fabsf(points[k].y_m) + fabsf(points[k].z_m);
+        far_count += (sum_m <= (float) POINT_MAX_M) ? 0U : 1U;
+    }
+    return far_count == 0U;
+}
+
 static nav_status_t check_points(const nav_process_disparity_in_t *in)
 {
     nav_status_t status = NAV_OK;
-    for (uint32_t k = 0U; (k < in->point_count) && (status == NAV_OK); k++)
+    if (!are_near(in->points, in->point_count))
     {
-        const nav_point_t *point = &in->points[k];
-        const bool is_fine = is_within((double) point->x_m, POINT_MAX_M) &&
-                             is_within((double) point->y_m, POINT_MAX_M) &&
-                             is_within((double) point->z_m, POINT_MAX_M);
-        status = is_fine ? NAV_OK : check_point(point);
+        for (uint32_t k = 0U; (k < in->point_count) && (status == NAV_OK); k++)
+        {
+            status = check_point(&in->points[k]);
+        }
     }
     return status;
 }
