@@ -390,10 +390,12 @@ static void analyze(nav_ctx_t *ctx,
     uint32_t index = 0U;
     ctx->time_s = in->time_s;
     (void) nav_heightmap_center(&ctx->heightmap, x_m, y_m);
-    nav_heightmap_surface(&ctx->heightmap, &ctx->params, in->time_s, &ctx->surface);
+    nav_heightmap_surface(&ctx->heightmap, &ctx->params, in->time_s, &ctx->surface_state,
+                          &ctx->surface);
     out->is_recentered = nav_costmap_recenter(&ctx->costmap, &ctx->params, x_m, y_m) ? 1U : 0U;
-    nav_costmap_update(&ctx->costmap, &ctx->scratch, &ctx->params, &ctx->surface, &ctx->kioz,
-                       in->global_position_m);
+    nav_costmap_update(&ctx->costmap, &ctx->costmap_state, &ctx->params, &ctx->surface,
+                       &ctx->surface_state);
+    nav_costmap_mark(&ctx->costmap, &ctx->params, &ctx->kioz, in->global_position_m);
     ctx->is_analyzed = 1U;
 
     for (uint32_t k = 0U; k < (uint32_t) NAV_COSTMAP_CELLS; k++)
