@@ -36,8 +36,7 @@ typedef struct
     int32_t origin_col; /* global index of the westernmost column */
     uint32_t is_placed; /* 0 until first centred */
     nav_height_cell_t cells[NAV_HEIGHTMAP_CELLS];
-    uint8_t
-        is_changed[NAV_BLOCKS]; /* 1 when the map under the block changed since the last surface */
+    uint8_t is_changed[NAV_BLOCKS]; /* 1 when the block changed since the last surface */
 } nav_heightmap_t;
 
 /** Surface height of an unknown cell: nothing on Mars is this deep. */
@@ -59,7 +58,7 @@ typedef struct
     uint32_t gap_count; /* cells of unknown height */
 } nav_surface_block_t;
 
-/** The heightmap unwrapped with a border of unknown cells. */
+/** Cells along one side of the heightmap with a border of unknown ones. */
 #define NAV_RAW_SIZE (NAV_HEIGHTMAP_SIZE + 2)
 
 /**
@@ -72,7 +71,7 @@ typedef struct
     uint32_t surface_count;          /* surfaces made so far */
     uint32_t changed_at[NAV_BLOCKS]; /* surface_count when the block was last made */
     nav_surface_block_t blocks[NAV_BLOCKS];
-    float z_m[NAV_RAW_SIZE * NAV_RAW_SIZE]; /* before gaps are closed */
+    float z_m[NAV_RAW_SIZE * NAV_RAW_SIZE]; /* SITE, unwrapped, before gaps are closed */
 } nav_surface_state_t;
 
 /** What became of the points of a chunk; a point for a full cell counts as neither. */

@@ -26,6 +26,8 @@
 /* Not a place on the map. */
 #define NAV_OUTSIDE (-1)
 
+_Static_assert(NAV_BLOCKS_SIDE <= 256, "list_blocks() has a byte for each block");
+
 /* A coordinate of a point is linear in its coordinates in ROVER. */
 typedef struct
 {
@@ -604,7 +606,6 @@ nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
 
     list_blocks(&placing.rows, block_row);
     list_blocks(&placing.cols, block_col);
-
     (void) memset(&batch, 0, sizeof(batch)); /* what no point fills is placed as well */
     for (uint32_t first = 0U; first < total; first += NAV_BATCH)
     {
