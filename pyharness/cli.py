@@ -85,6 +85,7 @@ def drive_command(
 ) -> int:
     """Run one drive; without arguments the demonstration drive."""
     from pyharness.drive_folder import check_folder, partial_folder, run_drive
+    from pyharness.records import Outcome
     from pyharness.scenario import check_places, load_scenario, make_terrain
     from sim.errors import ConfigError
 
@@ -109,7 +110,7 @@ def drive_command(
         draw_timeline_of(folder / "drive.dp", timeline)
     click.echo(_outcome_text(summary))
     click.echo(f"{folder}")
-    return 0 if summary["outcome"] == "goal_reached" else EXIT_FAULT
+    return 0 if Outcome(summary["outcome"]).is_reached else EXIT_FAULT
 
 
 def _scenario_overrides(options: Mapping[str, Any]) -> dict[str, object]:

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """One drive from a scenario: world, planner and executive together."""
 
-from pyharness.executive import Executive, SafetyWatch
+from pyharness.executive import Executive
+from pyharness.faults import SafetyWatch
 from pyharness.navlib import Zones
 from pyharness.planner import Planner
 from pyharness.records import KIND_END, Outcome, RecordStream, end_payload
-from pyharness.scenario import Scenario, drive_info, navlib_params, zones_request
+from pyharness.scenario import Scenario, directed_arcs, drive_info, navlib_params, zones_request
 from pyharness.thinker import Thinker
 from sim.terrain import Terrain
 from sim.vehicle import Vehicle
@@ -31,9 +32,9 @@ def drive(
     zones = zones_request(scenario)
     executive = Executive(
         world,
-        lambda: world.image(scenario.executive.look_around_deg),
         Thinker(planner_class(navlib_params(scenario), stream.publish), scenario.executive.compute),
-        info.waypoints,
+        directed_arcs(scenario),
+        info.waypoints if scenario.waypoints else (),
         scenario.executive,
         SafetyWatch(
             lambda truth: true_limit_violation(truth, vehicle),  # type: ignore[arg-type]
@@ -41,6 +42,6 @@ def drive(
         ),
         stream.publish,
     )
-    outcome = executive.run(zones)
+    outcome = executive.run(zones, scenario.prior_map_radius_m)
     stream.publish(KIND_END, world.time_s, end_payload(outcome))
     return outcome

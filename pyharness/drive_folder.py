@@ -24,6 +24,8 @@ from sim.config import dump_model
 from sim.terrain import Terrain
 
 PRODUCT_FILES = ("drive.dp", "summary.json")
+# after these the records so far are handed to the system: every cycle, every fault
+FLUSHED_KINDS = frozenset({Kind.SELECT_ARC_OUT, Kind.HOST_EVR})
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +104,7 @@ def _run_into(
     with DpWriter(folder / "drive.dp", info) as writer:
         subscribers: list[Callable[[Record], None]] = [
             writer.write,
-            lambda record: writer.flush() if record.kind == Kind.SELECT_ARC_OUT else None,
+            lambda record: writer.flush() if record.kind in FLUSHED_KINDS else None,
             history.take,
         ]
         if progress is not None:
