@@ -5,7 +5,8 @@ Exit codes: 0 done or goal reached, 2 bad input, 3 the drive ended in a fault, 1
 """
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,7 @@ from pyharness.errors import HarnessError
 from sim.errors import SimError
 
 if TYPE_CHECKING:
+    from pyharness.command_server import CommandServer
     from pyharness.drive_folder import Progress
 
 EXIT_BAD_INPUT = 2
@@ -73,12 +75,14 @@ terrain.add_command(stereo_noise)
 @click.option("--set", "settings", type=Assignment(), multiple=True, help="Scenario key = value.")
 @click.option("--seed", type=int, help="Of terrain and noise.")
 @click.option("--timeline", type=click.Path(path_type=Path), help="Draw who worked when, as PNG.")
+@click.option("--port", type=click.IntRange(0, 65535), help="Serve the command socket; 0: any.")
 @click.option("--force", is_flag=True, help="Replace a finished drive.")
 @click.option("-o", "out", type=click.Path(path_type=Path), help="Folder (drives/NAME-SEED).")
 def drive_command(
     scenario_file: Path | None,
     settings: tuple[tuple[str, str], ...],
     timeline: Path | None,
+    port: int | None,
     force: bool,
     out: Path | None,
     **options: Any,
@@ -99,8 +103,8 @@ def drive_command(
     except ConfigError as error:
         raise as_options(error, options) from None
     try:
-        with _ProgressBar() as bar:
-            summary = run_drive(scenario, ground, folder, force, bar.show)
+        with _command_server(port) as server, _ProgressBar() as bar:
+            summary = run_drive(scenario, ground, folder, force, bar.show, server)
     except KeyboardInterrupt:
         click.echo(f"enav: what was recorded so far is in {partial_folder(folder)}", err=True)
         raise
@@ -111,6 +115,22 @@ def drive_command(
     click.echo(_outcome_text(summary))
     click.echo(f"{folder}")
     return 0 if Outcome(summary["outcome"]).is_reached else EXIT_FAULT
+
+
+@contextmanager
+def _command_server(port: int | None) -> "Iterator[CommandServer | None]":
+    """Listen while a drive runs, where a port is given."""
+    if port is None:
+        yield None
+        return
+    from pyharness.command_server import HOST, CommandServer
+
+    server = CommandServer(port)
+    click.echo(f"enav: {HOST}:{server.port} waits for a client to say run", err=True)
+    try:
+        yield server
+    finally:
+        server.close()
 
 
 def _scenario_overrides(options: Mapping[str, Any]) -> dict[str, object]:

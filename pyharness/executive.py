@@ -98,13 +98,6 @@ class Executive:
 
     # -------------------------------------------------------------- from outside
 
-    def run(self, zones: Message, prior_map_radius_m: float = 0.0) -> Outcome:
-        """Drive until everything is done or a fault ends the drive."""
-        self.start(zones, prior_map_radius_m)
-        while self.outcome is None:
-            self.advance()
-        return self.outcome
-
     def start(self, zones: Message, prior_map_radius_m: float = 0.0) -> None:
         """Set the zones, take in what is known of the terrain around, begin."""
         with self._ending():
@@ -114,6 +107,12 @@ class Executive:
                 self._activities.images.take(lambda: self._world.ground_around(prior_map_radius_m))
                 self._activities.merge_all()
             self._next()
+
+    def finish(self) -> Outcome:
+        """Drive until everything is done or a fault ends the drive."""
+        while self.outcome is None:
+            self.advance()
+        return self.outcome
 
     def advance(self) -> None:
         """Live through one tick of the world."""

@@ -248,13 +248,14 @@ def check_places(
     problems = [
         f"{_place_of(path, overrides, key)}: {_off_terrain(terrain, *place)}"
         for key, place in places.items()
-        if not _is_on_terrain(terrain, *place)
+        if not is_on_terrain(terrain, *place)
     ]
     if problems:
         raise ConfigError(problems)
 
 
-def _is_on_terrain(terrain: Terrain, north_m: float, east_m: float) -> bool:
+def is_on_terrain(terrain: Terrain, north_m: float, east_m: float) -> bool:
+    """Whether a rover can stand there, wheels and belly on ground that is known."""
     return terrain.contains(north_m, east_m, MARGIN_M) and math.isfinite(
         terrain.height_at(north_m, east_m)
     )

@@ -43,7 +43,8 @@ class Drive:
         )
 
     def run(self):
-        return self.executive.run(new_message(Kind.SET_KIOZ_IN), self.prior_m)
+        self.executive.start(new_message(Kind.SET_KIOZ_IN), self.prior_m)
+        return self.executive.finish()
 
     @property
     def outcome(self):
