@@ -100,6 +100,10 @@ bench: $(SETUP)-bench ## set up and measure speed: a table, and build/bench.json
 	@mkdir -p build
 	@$(BIN)/python -m pyharness.bench
 
+.PHONY: drive-rate
+drive-rate: $(SETUP) ## thinking while driving against stopping to think: m/h on 20 terrains
+	@$(BIN)/python -m pyharness.drive_rate --workers $(JOBS)
+
 .PHONY: coverage
 coverage: $(SETUP) ## coverage of Navlib by its C tests alone: build/coverage/report/index.html
 	@find build -path 'build/coverage/*.gcda' -delete 2>/dev/null || true

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pyharness.cli_modes import modes_command
 from pyharness.cli_sim import stereo_noise
 from pyharness.cli_terrain import terrain
 from pyharness.cli_types import Assignment, Numbers, as_options
@@ -59,6 +60,7 @@ def _fail(message: str) -> int:
 
 
 cli.add_command(terrain)
+cli.add_command(modes_command)
 terrain.add_command(stereo_noise)
 
 

@@ -310,7 +310,7 @@ class Executive:
             reason = selection.main_reason
             raise FaultError(
                 "no_path",
-                f"{self._no_path_count} times in a row in mode {selection.mode}; paths rejected:"
+                f"{_times(self._no_path_count)} in mode {selection.mode}; paths rejected:"
                 f" {describe_rejections(selection.rejections)}",
                 self._no_path_count,
                 reason,
@@ -442,8 +442,12 @@ class Executive:
         self._unsafe_count += 1
         count, reason = self._unsafe_count, verdict.reason
         if self._is_final(self._mode, reason == Reason.UNKNOWN, count):
-            detail = f"{count} times in a row in mode {self._mode}; {verdict.text}"
+            detail = f"{_times(count)} in mode {self._mode}; {verdict.text}"
             raise FaultError("unsafe_arc", detail, count, reason, verdict.failing_at)
         self._telemetry.event(HostEvr.ARC_STOPPED, self._world.arc_fraction, reason, count)
         self._end_arc()
         self._stand(*self._look_and_analyze, self._select_arc)
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times in a row"

@@ -194,7 +194,7 @@ def test_the_modes_that_know_one_path_end_at_its_refusal(make_drive, mode):
     drive.planner.arcs = [(1.0, 0.0), None]
     outcome = drive.run()
     assert outcome.outcome == "no_path"
-    assert outcome.fault_detail.startswith(f"1 times in a row in mode {mode}")
+    assert outcome.fault_detail.startswith(f"once in mode {mode}")
     assert drive.world.looks == []
 
 
