@@ -99,23 +99,31 @@ class Activities:
 
     # -------------------------------------------------------------- planning
 
-    def analyze_terrain(self, goal: Waypoint) -> bool:
-        """Have the costmap recomputed for a goal."""
+    def analyze_terrain(self, goal: Waypoint, zone_margin_m: float) -> bool:
+        """Have the costmap recomputed for a goal, zones grown by a margin more than they must."""
         duration_s = self._thinker.analyze(
             self._world.time_s,
             copy_pose(self._world.estimate),
             goal,
-            self.predictor.global_position_m(self._wheels.remaining),
+            self.predictor.global_position_m(self._wheels.remaining) + zone_margin_m,
         )
         self.computer.occupy(Activity.ANALYZE_TERRAIN, duration_s)
         return True
 
     def select_arc(
-        self, goal: Waypoint, margin_m: float, finish: Callable[[Selection], None]
+        self,
+        goal: Waypoint,
+        margin_m: float,
+        zone_margin_m: float,
+        finish: Callable[[Selection], None],
     ) -> bool:
-        """Select an arc from the pose predicted at the end of this one."""
+        """Select an arc from the pose predicted at the end of this one, with margins to spare."""
         pose, uncertainty = self.predictor.at_end(self._wheels.remaining)
-        wider = replace(uncertainty, position_m=uncertainty.position_m + margin_m)
+        wider = replace(
+            uncertainty,
+            position_m=uncertainty.position_m + margin_m,
+            global_position_m=uncertainty.global_position_m + zone_margin_m,
+        )
         arc = self._wheels.arc
         selection, duration_s = self._thinker.select(self._world.time_s, pose, wider, goal, arc)
         self.computer.occupy(Activity.SELECT_ARC, duration_s, lambda: finish(selection), arc)

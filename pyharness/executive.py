@@ -46,6 +46,8 @@ from pyharness.wheels import Motion, Wheels
 
 LENGTH_TOLERANCE_M = 1e-6
 CRAWL_PIECE_MIN_M = 0.1
+# after no path was found it goes closer to zones for some arcs: out of the margin, or along it
+MARGIN_WAIVED_ARCS = 5
 GOAL_RADIUS_M = 1.0  # about the end of a directed arc, towards which terrain is analyzed
 
 # the modes that go on to another path when one is refused
@@ -95,6 +97,7 @@ class Executive:
         self._verdict = "nothing had been checked yet"
         self._unsafe_count = 0
         self._no_path_count = 0
+        self._margin_waived_arcs = 0
 
     # -------------------------------------------------------------- from outside
 
@@ -297,6 +300,7 @@ class Executive:
             self._no_path_found(selection)
         else:
             self._no_path_count = 0
+            self._margin_waived_arcs = max(0, self._margin_waived_arcs - 1)
             self._telemetry.cycle += 1
             self._is_leaving, self._mode = selection.is_leaving, selection.mode
             self._verdict = f"select_arc had passed the arc in mode {selection.mode}"
@@ -305,6 +309,8 @@ class Executive:
     def _no_path_found(self, selection: Selection) -> None:
         """Look around and try again, where the mode or unknown terrain gives hope."""
         self._no_path_count += 1
+        if Reason.KIOZ in selection.rejections:
+            self._margin_waived_arcs = MARGIN_WAIVED_ARCS
         is_unknown = Reason.UNKNOWN in selection.rejections
         if self._is_final(selection.mode, is_unknown, self._no_path_count):
             reason = selection.main_reason
@@ -394,7 +400,13 @@ class Executive:
         return do.look, do.fix_pose, do.process_disparity, self._analyze_terrain
 
     def _analyze_terrain(self) -> bool:
-        return self._activities.analyze_terrain(self._goal)
+        goal = self._goal
+        return self._activities.analyze_terrain(goal, self._zone_margin_m(goal))
+
+    def _zone_margin_m(self, goal: Waypoint) -> float:
+        """Return what is kept from zones on top, where a mode plans round them."""
+        is_kept = goal.mode in REROUTING and self._margin_waived_arcs == 0
+        return self._config.uncertainty.zone_margin_m if is_kept else 0.0
 
     def _select_arc(self) -> bool:
         """Select for this waypoint, or for the next where this arc ends in the waydisc."""
@@ -408,7 +420,7 @@ class Executive:
 
         # after arcs that turned out unsafe it keeps more distance
         margin_m = self._unsafe_count * self._config.uncertainty.unsafe_margin_m
-        return self._activities.select_arc(goal, margin_m, finish)
+        return self._activities.select_arc(goal, margin_m, self._zone_margin_m(goal), finish)
 
     def _check_map(self) -> bool:
         """Is the terrain under the rover known? Guarded refuses a pose where it is not."""

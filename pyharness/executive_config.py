@@ -62,6 +62,9 @@ class PoseUncertainty(_Section):
     global_sigmas: Annotated[float, Field(ge=0, le=10)] = 3.0  # zones grow by that many sigmas
     # from the selection of an arc of 1 m to the fix on it: half of it, and what VO takes to compute
     unfixed_ahead_m: Annotated[float, Field(ge=0, le=10)] = 0.75
+    # kept on top of them while there is a path that does: they grow further along it, and a rover
+    # driving along their edge would find itself inside; six metres at a poor localisation's 5 cm/m
+    zone_margin_m: Annotated[float, Field(ge=0, le=10)] = 0.3
 
 
 class StuckRules(_Section):

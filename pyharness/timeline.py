@@ -192,9 +192,8 @@ def _draw_cycles(axes: Axes, bars: Bars, window: tuple[float, float]) -> None:
         if index % 2 == 0:
             axes.axvspan(starts_s[index], starts_s[index + 1], color="#edf2f7", zorder=0)
         middle_s = 0.5 * (max(bar.start_s, window[0]) + min(bar.end_s, window[1]))
-        text = f"arc {bar.cycle}: {bar.length_m:.2f} m"
-        if bar.length_m == 0.0:
-            text = f"turn {bar.cycle}"
+        text = f"arc {bar.cycle}: " if bar.cycle else ""  # not planned: a crawl, a directed arc
+        text += f"{bar.length_m:.2f} m" if bar.length_m else "turn"
         if bar.heading_change_rad:
             text += f", {math.degrees(bar.heading_change_rad):+.0f}°"
         if bar.end_s - bar.start_s > 0.1 * WINDOW_S:

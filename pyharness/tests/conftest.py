@@ -12,6 +12,7 @@ from pyharness.params import param_values
 from pyharness.planner import Planner
 from pyharness.records import DriveInfo, Outcome, RecordStream, Waypoint, end_payload
 from pyharness.status import Mode, Reason, Status
+from pyharness.tests.executive_drive import Drive
 
 TICK_S = 0.125
 SPEED_M_S = 0.05
@@ -145,6 +146,7 @@ class FakePlanner(Planner):
         self.zone_north_m = math.inf  # Unguarded arcs that end beyond it are refused
         self.ace_evaluations = 10
         self.refuses = None
+        self.reject_reason = Reason.TILT
 
     def _answer(self, name, kind, request):
         self.calls.append((name, float(request["time_s"]), request))
@@ -165,7 +167,7 @@ class FakePlanner(Planner):
         answer["ace_evaluations"] = self.ace_evaluations
         if arc is None:
             answer["status"] = Status.NO_PATH
-            answer["rejections"][Reason.TILT] = 1694
+            answer["rejections"][self.reject_reason] = 1694
         else:
             answer["arc"]["length_m"], answer["arc"]["heading_change_rad"] = arc
         return answer
@@ -202,6 +204,16 @@ def expected_slip():
 @pytest.fixture
 def fake_planner():
     return FakePlanner
+
+
+@pytest.fixture
+def make_drive():
+    """Make a drive; the world moves by the given share of what is commanded."""
+
+    def make(motion_share=1.0, **settings):
+        return Drive(FakeWorld(motion_share), FakePlanner, **settings)
+
+    return make
 
 
 @pytest.fixture

@@ -6,167 +6,18 @@ from dataclasses import replace
 
 import pytest
 
-from pyharness.dp import Kind, native_schema, new_message
-from pyharness.executive import Executive
-from pyharness.executive_config import ComputeTimes, ExecutiveConfig
+from pyharness.dp import Kind, native_schema
+from pyharness.executive_config import ComputeTimes
 from pyharness.faults import SafetyWatch
-from pyharness.messages import Arc, DirectedArc
-from pyharness.params import param_values
-from pyharness.records import RecordStream, Waypoint
-from pyharness.status import Activity, HostEvr, Mode
-from pyharness.thinker import Thinker
-
-ARC_S = 20.0  # 1 m in the fake world
-FAR = Waypoint(15.0, 0.0, 1.0, "avoid_all")
-
-
-class Drive:
-    """One drive with everything about it at hand."""
-
-    def __init__(
-        self, world, planner_class, waypoints=(FAR,), arcs=(), safety=None, prior_m=0.0, **settings
-    ):
-        self.records = []
-        stream = RecordStream([self.records.append])
-        self.world = world
-        self.planner = planner_class(param_values({}), stream.publish)
-        self.config = ExecutiveConfig(**settings)
-        self.prior_m = prior_m
-        self.executive = Executive(
-            world,
-            Thinker(self.planner, self.config.compute),
-            arcs,
-            waypoints,
-            self.config,
-            safety or SafetyWatch(lambda _: None, lambda *_: False),
-            stream.publish,
-        )
-
-    def run(self):
-        self.executive.start(new_message(Kind.SET_KIOZ_IN), self.prior_m)
-        return self.executive.finish()
-
-    @property
-    def outcome(self):
-        return self.executive.outcome
-
-    def events(self):
-        schema = native_schema()
-        items = [item for item in self.records if item.kind == Kind.HOST_EVR]
-        return [HostEvr(int(schema.decode(item.kind, item.payload)["id"])) for item in items]
-
-    def calls(self, name):
-        return [
-            (time_s, request) for called, time_s, request in self.planner.calls if called == name
-        ]
-
-    def timeline(self, activity):
-        schema = native_schema()
-        items = (
-            schema.decode(item.kind, item.payload)
-            for item in self.records
-            if item.kind == Kind.TIMELINE
-        )
-        return [
-            (float(item["start_s"]), float(item["end_s"]), int(item["cycle"]))
-            for item in items
-            if item["activity"] == activity
-        ]
-
-
-@pytest.fixture
-def make_drive(fake_world, fake_planner):
-    def make(motion_share=1.0, **settings):
-        return Drive(fake_world(motion_share), fake_planner, **settings)
-
-    return make
+from pyharness.records import Waypoint
+from pyharness.status import Activity, Mode
+from pyharness.tests.executive_drive import ARC_S
 
 
 def test_the_drive_ends_inside_the_waydisc(make_drive):
     drive = make_drive()
     assert drive.run().outcome == "goal_reached"
     assert drive.world.state.x_m == pytest.approx(14.0, abs=0.02)
-
-
-def test_the_crawl_is_straight_unguarded_and_checked_against_zones_only(make_drive):
-    drive = make_drive()
-    drive.run()
-    crawl = [item for item in drive.timeline(Activity.DRIVING) if item[2] == 0]
-    assert sum(end_s - start_s for start_s, end_s, _ in crawl) == pytest.approx(5.5 * ARC_S)
-    assert min(time_s for time_s, _ in drive.calls("select")) >= crawl[-1][1]
-    assert min(time_s for time_s, _ in drive.calls("evaluate")) >= crawl[-1][1]
-    checks = [request for _, request in drive.calls("check_zones")]
-    assert float(checks[0]["arc"]["length_m"]) == 5.5
-    assert len(checks) > 20
-    # an image before it, and one at the start of every metre
-    assert drive.world.images[1:7] == [item[0] for item in crawl]
-    assert drive.events()[:3] == [HostEvr.GO_TO, HostEvr.CRAWL, HostEvr.WAYPOINT_REACHED]
-
-
-def test_the_crawl_is_as_long_as_the_rover_believes_not_as_commanded(make_drive):
-    drive = make_drive(motion_share=0.8)
-    drive.run()
-    crawl = [item for item in drive.timeline(Activity.DRIVING) if item[2] == 0]
-    assert sum(end_s - start_s for start_s, end_s, _ in crawl) >= 5.5 / 0.8 * ARC_S - 0.125
-
-
-def test_a_zone_ahead_of_the_crawl_is_refused_before_the_rover_moves(make_drive):
-    drive = make_drive()
-    drive.planner.zone_north_m = 4.0
-    outcome = drive.run()
-    assert outcome.outcome == "unsafe_arc"
-    assert "kioz" in outcome.fault_detail
-    assert drive.timeline(Activity.DRIVING) == []
-
-
-def test_the_crawl_is_skipped_where_the_map_under_the_rover_is_known(make_drive):
-    drive = make_drive(prior_m=4.0)
-    drive.planner.is_map_known = True
-    assert drive.run().is_reached
-    assert drive.calls("check_zones") == []
-    assert HostEvr.CRAWL_SKIPPED in drive.events()
-    _, prior = drive.calls("process")[0]
-    assert (float(prior["time_s"]), float(prior["points"][0]["x_m"])) == (0.0, 4.0)
-
-
-def test_a_directed_arc_is_evaluated_before_and_while_it_is_driven(make_drive):
-    arcs = (DirectedArc(Arc(3.0, 0.6), "guarded"), DirectedArc(Arc(0.0, 1.0), "unguarded"))
-    drive = make_drive(arcs=arcs, waypoints=())
-    assert drive.run().outcome == "arcs_driven"
-    driving = drive.timeline(Activity.DRIVING)
-    first_s = driving[0][0]
-    before = [request for time_s, request in drive.calls("evaluate") if time_s < first_s]
-    assert [float(request["arc"]["length_m"]) for request in before] == [3.0]
-    during = [request for time_s, request in drive.calls("evaluate") if time_s >= first_s]
-    lengths_m = [float(request["arc"]["length_m"]) for request in during]
-    assert len(lengths_m) > 9
-    assert lengths_m == sorted(lengths_m, reverse=True)
-    shape = [float(item["arc"]["heading_change_rad"] / item["arc"]["length_m"]) for item in during]
-    assert shape == pytest.approx([0.2] * len(shape))
-    # three pieces without a stop, an image at the start of each; then the turn in place
-    assert [end_s - start_s for start_s, end_s, _ in driving] == [20.0, 20.0, 20.0, 20.0]
-    assert driving[0][1] == driving[1][0]
-    assert len(drive.timeline(Activity.STEERING)) == 2
-    assert drive.calls("select") == []
-    assert drive.events() == [HostEvr.DIRECTED_ARC, HostEvr.DIRECTED_ARC]
-
-
-@pytest.mark.parametrize("check", [0, 5])
-def test_an_unsafe_directed_arc_is_a_fault_and_no_other_is_looked_for(make_drive, check):
-    drive = make_drive(arcs=(DirectedArc(Arc(3.0, 0.0), "guarded"),), waypoints=())
-    drive.planner.is_safe = [True] * check + [False]
-    outcome = drive.run()
-    assert outcome.outcome == "unsafe_arc"
-    assert bool(drive.timeline(Activity.DRIVING)) == (check > 0)
-    assert drive.world.state.x_m < 3.0
-    assert drive.events()[-1] == HostEvr.FAULT_UNSAFE_ARC
-
-
-def test_waypoints_follow_directed_arcs_without_a_crawl_where_the_map_is_known(make_drive):
-    drive = make_drive(arcs=(DirectedArc(Arc(6.0, 0.0), "unguarded"),))
-    drive.planner.is_map_known = True
-    assert drive.run().is_reached
-    assert drive.events()[:3] == [HostEvr.DIRECTED_ARC, HostEvr.GO_TO, HostEvr.CRAWL_SKIPPED]
 
 
 def test_standing_to_think_the_rover_looks_and_plans_between_arcs(make_drive):
@@ -186,49 +37,6 @@ def test_standing_to_think_the_rover_looks_and_plans_between_arcs(make_drive):
     _, request = drive.calls("select")[-1]
     newest_s = max(float(item["time_s"]) for _, item in drive.calls("process"))
     assert float(request["time_s"]) - newest_s == pytest.approx(think_s, abs=1.0)
-
-
-@pytest.mark.parametrize("mode", ["unguarded", "guarded"])
-def test_the_modes_that_know_one_path_end_at_its_refusal(make_drive, mode):
-    drive = make_drive(waypoints=(Waypoint(15.0, 0.0, 1.0, mode),))
-    drive.planner.arcs = [(1.0, 0.0), None]
-    outcome = drive.run()
-    assert outcome.outcome == "no_path"
-    assert outcome.fault_detail.startswith(f"once in mode {mode}")
-    assert drive.world.looks == []
-
-
-def test_guarded_stops_at_an_unsafe_arc_for_good(make_drive):
-    drive = make_drive(waypoints=(Waypoint(15.0, 0.0, 1.0, "guarded"),))
-    drive.planner.is_safe = [True, True, False, True]
-    assert drive.run().outcome == "unsafe_arc"
-
-
-def test_slip_shifts_the_predicted_pose_and_widens_its_uncertainty(make_drive, expected_slip):
-    requests = []
-    for slip in (expected_slip(), expected_slip(-0.02, 0.01, 0.05, 0.03)):
-        drive = make_drive()
-        drive.world.slip = slip
-        drive.run()
-        requests.append(drive.calls("select")[3][1])
-    plain, slipping = requests
-    for name, group, change in (
-        ("x_site_m", "pose", -0.02),
-        ("y_site_m", "pose", 0.01),
-        ("position_m", "uncertainty", 0.05),
-        ("yaw_rad", "uncertainty", 0.03),
-    ):
-        assert float(slipping[group][name] - plain[group][name]) == pytest.approx(change), name
-
-
-def test_zones_grow_by_what_the_error_will_be_before_the_next_fix(make_drive):
-    drive = make_drive()
-    drive.run()
-    _, request = drive.calls("select")[3]
-    config = drive.config.uncertainty
-    sigma_m = float(request["uncertainty"]["global_position_m"]) / config.global_sigmas
-    ahead_m = (sigma_m - drive.world.state.sigma_position_m) / 0.1
-    assert 0.05 < ahead_m - config.unfixed_ahead_m < 0.5
 
 
 def test_the_plan_uses_terrain_seen_two_arcs_earlier(make_drive):
@@ -401,13 +209,6 @@ def test_a_goal_under_the_rover_needs_no_driving(make_drive):
     assert drive.world.ticks == 0
 
 
-def test_without_a_crawl_it_looks_before_it_moves(make_drive):
-    drive = make_drive(crawl_length_m=0.0)
-    assert drive.run().is_reached
-    assert drive.world.images[0] == 0.0
-    assert drive.timeline(Activity.DRIVING)[0][0] > 0.0
-
-
 @pytest.mark.parametrize("name", ["process", "analyze", "select", "evaluate"])
 def test_a_planner_that_refuses_ends_the_drive(make_drive, name):
     drive = make_drive()
@@ -424,11 +225,6 @@ def test_a_true_violation_ends_the_drive_and_says_what_navlib_thought(make_drive
     assert outcome.outcome == "limit_violation"
     assert "tilt 40 deg" in outcome.fault_detail
     assert "said safe" in outcome.fault_detail
-
-
-def test_a_violation_in_the_crawl_is_known_to_be_unguarded(make_drive):
-    safety = SafetyWatch(lambda truth: "bump" if truth.x_m > 2.0 else None, lambda *_: False)
-    assert "in mode unguarded said safe" in make_drive(safety=safety).run().fault_detail
 
 
 def test_a_true_position_in_a_zone_is_a_fault(make_drive):

@@ -80,6 +80,16 @@ def test_the_stream_over_the_socket_is_the_recorded_one(live):
     assert live.outcome.outcome == "goal_reached"
 
 
+def test_pausing_and_stepping_leave_the_records_as_they_would_have_been(live):
+    for time_s in (20.0, 20.5, 90.0):
+        live.run_until(time_s)
+    live.client.ask(command="step", count=7)
+    live.finish()
+    undisturbed = []
+    drive(live.scenario, make_terrain(live.scenario), Enav, RecordStream([undisturbed.append]))
+    assert live.records == undisturbed
+
+
 def test_an_arc_is_evaluated_on_request(live):
     live.run_until(200.0)
     verdict = live.client.ask(command="evaluate_arc", length_m=1.0)["result"]
