@@ -142,6 +142,8 @@ class Executive:
             self._activities.images.clear()
             self._world.place(north_m, east_m, yaw_rad)
             self._telemetry.event(HostEvr.PLACED, north_m, east_m, yaw_rad)
+            self._stuck.new_goal()
+            self._unsafe_count = self._no_path_count = 0
             self._next()
 
     def image_now(self) -> int:
@@ -232,7 +234,7 @@ class Executive:
 
     def _begin_go_to(self) -> None:
         """Look; then crawl where the terrain under the rover is not known, else plan."""
-        self._phase = Phase.GO_TO
+        self._phase, self._ahead = Phase.GO_TO, NO_ARC
         self._course.report_waypoint()
         next_task = self._check_map if self._config.crawl_length_m > 0.0 else self._select_arc
         self._stand(*self._look_and_analyze, next_task)

@@ -78,7 +78,8 @@ class StuckRules(_Section):
 class ExecutiveConfig(_Section):
     """Settings of the executive."""
 
-    crawl_length_m: Annotated[float, Field(ge=0, le=100)] = 5.5  # at least that; SIM section 3
+    # at least that; SIM section 3. No more than evaluate_arc takes
+    crawl_length_m: Annotated[float, Field(ge=0, le=10)] = 5.5
     image_spacing_m: Annotated[float, Field(gt=0, le=10)] = 1.0  # crawling or directed: as planned
     # standing: stop after every arc, look, think, as rovers before did
     thinking: Literal["while_driving", "standing"] = "while_driving"

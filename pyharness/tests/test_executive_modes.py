@@ -3,6 +3,7 @@
 
 import pytest
 
+from pyharness.dp import Kind, new_message
 from pyharness.faults import SafetyWatch
 from pyharness.messages import Arc, DirectedArc
 from pyharness.records import Waypoint
@@ -176,3 +177,31 @@ def test_without_a_crawl_it_looks_before_it_moves(make_drive):
 def test_a_violation_in_the_crawl_is_known_to_be_unguarded(make_drive):
     safety = SafetyWatch(lambda truth: "bump" if truth.x_m > 2.0 else None, lambda *_: False)
     assert "in mode unguarded said safe" in make_drive(safety=safety).run().fault_detail
+
+
+def test_guarded_looks_again_at_terrain_that_was_not_seen(make_drive):
+    drive = make_drive(waypoints=(Waypoint(15.0, 0.0, 1.0, "guarded"),))
+    drive.planner.reject_reason = Reason.UNKNOWN
+    drive.planner.arcs = [(1.0, 0.0), None, (1.0, 0.0)]
+    assert drive.run().is_reached
+    assert len(drive.world.looks) == 1
+
+
+def test_a_rover_set_down_in_its_crawl_begins_the_go_to_again(make_drive):
+    drive = make_drive()
+    drive.executive.start(new_message(Kind.SET_KIOZ_IN))
+    while drive.world.state.x_m < 2.5:
+        drive.executive.advance()
+    drive.planner.is_map_known = True
+    drive.executive.place(5.0, 0.0, 0.0)
+    assert drive.executive.finish().is_reached
+    assert drive.events()[:5] == [
+        HostEvr.GO_TO,
+        HostEvr.CRAWL,
+        HostEvr.PLACED,
+        HostEvr.GO_TO,
+        HostEvr.CRAWL_SKIPPED,
+    ]
+    # nothing of the crawl is left
+    lengths_m = [float(request["arc"]["length_m"]) for _, request in drive.calls("evaluate")]
+    assert 0.9 < max(lengths_m) <= 1.0

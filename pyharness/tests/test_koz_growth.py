@@ -69,7 +69,7 @@ def stays_out(seed):
 
 
 def test_the_uncertainty_grows_along_the_drive_and_the_refused_band_with_it():
-    history, analyses = run(0)
+    history, analyses = run(0, **{"executive.uncertainty.zone_margin_m": 0.0})
     grown_m = np.array(
         [float(request["uncertainty"]["global_position_m"]) for request, _ in history.selections]
     )
@@ -81,7 +81,10 @@ def test_the_uncertainty_grows_along_the_drive_and_the_refused_band_with_it():
 
 
 def test_without_growth_the_same_errors_lead_into_the_zone():
-    history, _ = run(0, **{"executive.uncertainty.global_sigmas": 0.0})
+    nothing = {"global_sigmas": 0.0, "zone_margin_m": 0.0}
+    history, _ = run(
+        0, **{f"executive.uncertainty.{name}": value for name, value in nothing.items()}
+    )
     assert history.outcome.outcome == "kioz_violation"
 
 
