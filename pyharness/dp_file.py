@@ -50,13 +50,18 @@ def _padding(size_bytes: int) -> int:
 # ------------------------------------------------------------------ the description in the header
 
 
-def _describe(schema: Schema, info: DriveInfo) -> bytes:
-    """Return the JSON text of a header, to a multiple of the alignment."""
-    data = {
+def description(schema: Schema, info: DriveInfo) -> dict[str, Any]:
+    """Return, as plain data, what the records of a drive look like and what drive it is."""
+    return {
         "drive": asdict(info),
         "kinds": [asdict(item) for item in schema.kinds.values()],
         "records": [asdict(item) for item in schema.records.values()],
     }
+
+
+def _describe(schema: Schema, info: DriveInfo) -> bytes:
+    """Return the JSON text of a header, to a multiple of the alignment."""
+    data = description(schema, info)
     text = json.dumps(data, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode()
     return text + b" " * _padding(len(text))
 

@@ -51,9 +51,9 @@ def draw_overhead(history: History, terrain: Terrain, path: Path) -> None:
         figure = Figure(figsize=size_in, dpi=130, layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.add_subplot()
-        _draw_terrain(figure, axes, terrain, window)
+        draw_terrain(figure, axes, terrain, window)
         rock_handles = _draw_rocks(axes, terrain, window)
-        _draw_zones(axes, history)
+        draw_zones(axes, history)
         _draw_map(axes, history)
         _draw_arcs(axes, history)
         _draw_track(axes, history)
@@ -85,7 +85,7 @@ def _window(history: History, terrain: Terrain) -> Window:
     )
 
 
-def _draw_terrain(figure: Figure, axes: Axes, terrain: Terrain, window: Window) -> None:
+def draw_terrain(figure: Figure, axes: Axes, terrain: Terrain, window: Window) -> None:
     """Shade the heights, sun from the north-west, and colour them."""
     south_m, north_m, west_m, east_m = window
     rows = _span(terrain.north_min_m, terrain.resolution_m, south_m, north_m)
@@ -138,7 +138,8 @@ def _draw_rocks(axes: Axes, terrain: Terrain, window: Window) -> list[Patch]:
     return handles
 
 
-def _draw_zones(axes: Axes, history: History) -> None:
+def draw_zones(axes: Axes, history: History) -> None:
+    """Draw the keep-in and keep-out zones as they were set."""
     if history.zones is None:
         return
     for zone in history.zones["zones"][: int(history.zones["zone_count"])]:
@@ -253,7 +254,7 @@ def _finish(axes: Axes, history: History, window: Window, rocks: Iterable[Patch]
     axes.set(xlim=(west_m, east_m), ylim=(south_m, north_m), aspect="equal")
     axes.set(xlabel="east, m", ylabel="north, m")
     axes.grid(color="white", alpha=0.18, linewidth=0.5)
-    _draw_scale(axes, window)
+    draw_scale(axes, window)
     axes.legend(handles=[*_line_handles(history), *rocks], **LEGEND)
     info, outcome = history.info, history.outcome
     title = f"{info.name}, seed {info.seed}, {info.planner}, {info.waypoints[-1].mode}"
@@ -273,7 +274,7 @@ def _finish(axes: Axes, history: History, window: Window, rocks: Iterable[Patch]
         )
 
 
-def _draw_scale(axes: Axes, window: Window) -> None:
+def draw_scale(axes: Axes, window: Window) -> None:
     """Draw a bar of a round length and an arrow to the north."""
     south_m, north_m, west_m, east_m = window
     width_m, height_m = east_m - west_m, north_m - south_m
