@@ -111,11 +111,8 @@ def _run_into(
     duration_wall_s = time.perf_counter() - start_s
 
     summary = with_wall_time(metrics.summarize(history), duration_wall_s)
-    (folder / "metrics.csv").write_text(metrics.cycles_csv(history), "utf-8")
-    (folder / "truth.csv").write_text(metrics.truth_csv(history), "utf-8")
-    (folder / "evr.log").write_text(metrics.evr_log(history), "utf-8")
     draw_overhead(history, terrain, folder / "overhead.png")
-    (folder / "summary.json").write_text(metrics.summary_text(summary), "utf-8")
+    metrics.write(history, summary, folder)
     return summary
 
 

@@ -7,6 +7,7 @@ import json
 import math
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -77,6 +78,14 @@ def rejection_counts(history: History) -> dict[str, int]:
         reason.name.lower(): sum(int(counts[reason.value]) for counts in answers)
         for reason in REASONS
     }
+
+
+def write(history: History, summary: dict[str, Any], folder: Path) -> None:
+    """Write the tables of a drive, and its summary last."""
+    (folder / "metrics.csv").write_text(cycles_csv(history), "utf-8")
+    (folder / "truth.csv").write_text(truth_csv(history), "utf-8")
+    (folder / "evr.log").write_text(evr_log(history), "utf-8")
+    (folder / "summary.json").write_text(summary_text(summary), "utf-8")
 
 
 def summary_text(summary: dict[str, Any]) -> str:

@@ -7,8 +7,8 @@ import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from pyharness.dp_file import DpReader
 from pyharness.history import History
+from pyharness.replay import read_history
 from pyharness.status import Activity
 
 WINDOW_S = 180.0  # six or seven planning cycles: short enough to read
@@ -16,10 +16,7 @@ WINDOW_S = 180.0  # six or seven planning cycles: short enough to read
 
 def draw_timeline_of(drive: Path, path: Path) -> None:
     """Write the timeline of a recorded drive as PNG, from its first planning cycle on."""
-    with DpReader(drive) as reader:
-        history = History(reader.schema, reader.info)
-        for record in reader.records():
-            history.take(record)
+    history, _ = read_history(drive)
     draw_timeline(history, path)
 
 
