@@ -113,6 +113,12 @@ coverage: $(SETUP) ## coverage of Navlib by its C tests alone: build/coverage/re
 .PHONY: verify
 verify: test lint coverage ace-guarantee ## everything that is checked, and ACE against a million poses
 
+.PHONY: golden
+golden: $(SETUP) ## record the golden drive of a PowerPC again (needs its compiler and qemu)
+	@mkdir -p build
+	@.ci/powerpc_drive build/powerpc.dp
+	@xz -9 --stdout build/powerpc.dp >pyharness/tests/data/powerpc.dp.xz
+
 .PHONY: ace-guarantee
 ace-guarantee: $(SETUP) ## settle a million random poses, and search for ground that breaks ACE's bounds
 	@mkdir -p build

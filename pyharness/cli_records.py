@@ -59,14 +59,17 @@ def replay_command(
         raise HarnessError("--export: give it without --rerun, for the file that -o of that wrote")
     if out is not None:
         _check_out(out, force)
+    from pyharness.replay import makes_sense
+
     try:
-        if style is not None and out is not None:
-            return _export(file, style, out)
-        if settings or planner:
-            return _what_if(file, settings, planner, out)
-        if rerun:
-            return _rerun(file, out)
-        return _replay(file, speed, from_cycle, out)
+        with makes_sense(file, "its records make no sense"):
+            if style is not None and out is not None:
+                return _export(file, style, out)
+            if settings or planner:
+                return _what_if(file, settings, planner, out)
+            if rerun:
+                return _rerun(file, out)
+            return _replay(file, speed, from_cycle, out)
     except OSError as error:
         raise OutputError(f"{error.filename or out}: {error.strerror}") from error
 

@@ -293,8 +293,8 @@ class DpReader:
                 f"a schema of {size} bytes, expected at most {SCHEMA_SIZE_MAX_BYTES}"
             )
         text = self._take(size, "the schema")
-        (check, _) = struct.unpack(self._prefix + "2I", self._take(8, "the header's checksum"))
-        if check != zlib.crc32(head + text):
+        checks = self._take(8, "the header's checksum")
+        if struct.unpack(self._prefix + "2I", checks) != (zlib.crc32(head + text), 0):
             raise _DamageError("the header's checksum does not match")
         try:
             data = json.loads(text)

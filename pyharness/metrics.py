@@ -75,9 +75,13 @@ def rejection_counts(history: History) -> dict[str, int]:
     """Return how many candidate paths were rejected, by reason, over all planning cycles."""
     answers = [answer["rejections"] for _, answer in history.selections]
     return {
-        reason.name.lower(): sum(int(counts[reason.value]) for counts in answers)
-        for reason in REASONS
+        reason.name.lower(): sum(_count(counts, reason) for counts in answers) for reason in REASONS
     }
+
+
+def _count(counts: npt.NDArray[Any], reason: Any) -> int:
+    """Return how often a reason occurred; a file may be older than the reason."""
+    return int(counts[reason.value]) if reason.value < len(counts) else 0
 
 
 def write(history: History, summary: dict[str, Any], folder: Path) -> None:
@@ -165,7 +169,7 @@ def _cycle_row(request: Message, answer: Message) -> dict[str, Any]:
         "paths_tested": int(answer["paths_tested"]),
     }
     for reason in REASONS:
-        row[f"rejected_{reason.name.lower()}"] = int(answer["rejections"][reason.value])
+        row[f"rejected_{reason.name.lower()}"] = _count(answer["rejections"], reason)
     found = {
         "arc_length_m": float(answer["arc"]["length_m"]),
         "arc_heading_change_rad": float(answer["arc"]["heading_change_rad"]),

@@ -3,6 +3,7 @@
 
 import time
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from pyharness.dp import Kind
@@ -100,9 +101,18 @@ def taken(history: History, records: Iterable[Record], path: Path) -> Iterator[R
 
 def take(history: History, record: Record, path: Path) -> None:
     """Take in a record of a file whose layout may be another than this program knows."""
-    try:
+    with makes_sense(path, f"record {record.sequence} is not laid out as this program expects"):
         history.take(record)
-    except (KeyError, ValueError, IndexError) as error:
-        raise DpFileError(
-            f"{path}: record {record.sequence} is not laid out as this program expects: {error}"
-        ) from None
+
+
+@contextmanager
+def makes_sense(path: Path, fault: str) -> Iterator[None]:
+    """Turn what fails because of the contents of a file, its checksums being right, into an error.
+
+    Raises:
+        DpFileError: With the fault.
+    """
+    try:
+        yield
+    except (LookupError, ValueError, TypeError, ArithmeticError) as error:
+        raise DpFileError(f"{path}: {fault}: {error}") from None

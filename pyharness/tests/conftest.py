@@ -8,15 +8,11 @@ import numpy as np
 import pytest
 
 from pyharness.dp import Kind, native_schema, new_message
-from pyharness.dp_file import DpWriter
-from pyharness.drive import drive
 from pyharness.params import param_values
 from pyharness.planner import Planner
-from pyharness.planners import load_planner
 from pyharness.records import DriveInfo, Outcome, RecordStream, Waypoint, end_payload
-from pyharness.scenario import drive_info as info_of
-from pyharness.scenario import load_scenario, make_terrain
 from pyharness.status import Reason, Status
+from pyharness.tests.quick_drive import record_drive
 
 TICK_S = 0.125
 SPEED_M_S = 0.05
@@ -191,22 +187,6 @@ def some_records():
     stream.publish(0, 2.0, end_payload(Outcome("goal_reached")))
     assert all(record.kind == 0 or record.kind in native_schema().kinds for record in records)
     return records
-
-
-QUICK_DRIVE = {
-    "terrain": {"size_m": 40.0, "cfa": 0.05},
-    "start": [-10.0, 0.0, 0.0],
-    "goal": [0.0, 0.0],
-    "camera": {"cloud_width_px": 64, "cloud_height_px": 48},
-}
-
-
-def record_drive(path, overrides):
-    """Record a drive of a tenth of a second; return how it ended."""
-    scenario = load_scenario(None, {**QUICK_DRIVE, **overrides})
-    planner_class = load_planner(scenario.planner)
-    with DpWriter(path, info_of(scenario)) as writer:
-        return drive(scenario, make_terrain(scenario), planner_class, RecordStream([writer.write]))
 
 
 @pytest.fixture

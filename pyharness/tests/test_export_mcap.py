@@ -12,6 +12,7 @@ from pyharness.dp import Kind, new_message
 from pyharness.dp_file import DpReader
 from pyharness.errors import HarnessError
 from pyharness.export_mcap import SCHEMAS, _grid, _quaternion, write_mcap
+from pyharness.tests.quick_drive import record_drive
 
 reader_of = pytest.importorskip("mcap.reader").make_reader
 
@@ -19,8 +20,6 @@ reader_of = pytest.importorskip("mcap.reader").make_reader
 @pytest.fixture(scope="module")
 def exported(tmp_path_factory):
     """Messages by topic, and the schema of each topic, of a drive with all products."""
-    from pyharness.tests.conftest import record_drive
-
     folder = tmp_path_factory.mktemp("mcap")
     record_drive(folder / "drive.dp", {"records": "full"})
     with DpReader(folder / "drive.dp") as reader:
