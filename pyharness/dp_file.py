@@ -20,6 +20,7 @@ from pyharness.dp import (
     ByteOrder,
     EventDefinition,
     FieldDefinition,
+    Kind,
     KindDefinition,
     RecordDefinition,
     Schema,
@@ -96,7 +97,11 @@ def _read_info(data: Mapping[str, Any]) -> DriveInfo:
 
 
 class DpWriter:
-    """Writes a data product file of this machine's layout and byte order."""
+    """Writes a data product file of this machine's layout and byte order.
+
+    Whole planning cycles are handed to the operating system at once: a killed program loses the
+    current one at most. The disk has them all when the file is closed.
+    """
 
     def __init__(self, path: Path, info: DriveInfo) -> None:
         """Create the file, which must not exist, and write its header."""
@@ -114,7 +119,7 @@ class DpWriter:
         self._file.write(head + text + check)
 
     def write(self, record: Record) -> None:
-        """Append one record."""
+        """Append one record; the answer of select_arc ends a planning cycle."""
         head = struct.pack(
             "=" + _RECORD_HEADER,
             SYNC,
@@ -125,10 +130,8 @@ class DpWriter:
         )
         checks = struct.pack("=" + _CHECKS, zlib.crc32(head), zlib.crc32(record.payload))
         self._file.write(head + checks + record.payload + bytes(_padding(len(record.payload))))
-
-    def flush(self) -> None:
-        """Hand everything written so far to the operating system."""
-        self._file.flush()
+        if record.kind == Kind.SELECT_ARC_OUT:
+            self._file.flush()
 
     def close(self) -> None:
         """Bring the file to the disk and close it."""

@@ -102,7 +102,6 @@ def _run_into(
     with DpWriter(folder / "drive.dp", info) as writer:
         subscribers: list[Callable[[Record], None]] = [
             writer.write,
-            lambda record: writer.flush() if record.kind == Kind.SELECT_ARC_OUT else None,
             history.take,
         ]
         if progress is not None:

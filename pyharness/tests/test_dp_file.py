@@ -62,17 +62,6 @@ def test_every_part_begins_at_a_multiple_of_eight(golden):
     assert header_bytes(data) % 8 == 0
 
 
-def test_records_before_the_flush_point_survive_a_killed_writer(tmp_path, drive_info, some_records):
-    writer = DpWriter(tmp_path / "cut.dp", drive_info)
-    writer.write(some_records[0])
-    writer.flush()
-    records, damage = read(tmp_path / "cut.dp")
-    writer.close()
-    assert records == some_records[:1]
-    assert damage is not None
-    assert damage.reason == "the file ends without its end record"
-
-
 @pytest.mark.faults
 def test_a_file_cut_anywhere_gives_all_whole_records_and_the_offset(golden, some_records):
     data = golden.read_bytes()
