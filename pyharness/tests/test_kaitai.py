@@ -75,7 +75,11 @@ def compare(kaitai, path):
 
 
 def test_a_drive_of_this_machine_is_read(kaitai, tmp_path, record_quick_drive):
-    settings = {"records": "display", "executive.crawl_length_m": 2.0, "goal": [-4.0, 0.0]}
+    settings = {
+        "records": "display",
+        "camera": {"cloud_width_px": 32, "cloud_height_px": 24},
+        "goal": [-2.0, 0.0],
+    }
     record_quick_drive(tmp_path / "drive.dp", settings)
     assert len(compare(kaitai, tmp_path / "drive.dp")) >= 18
 
