@@ -11,8 +11,11 @@ from pyharness.cli_types import Assignment, Numbers
 from pyharness.errors import HarnessError, OutputError
 
 if TYPE_CHECKING:
-    from pyharness.dp_file import Damage
+    from collections.abc import Iterator
+
+    from pyharness.dp_file import Damage, DpReader
     from pyharness.history import History
+    from pyharness.records import Record
 
 EXIT_DAMAGED = 2
 EXIT_DIFFERS = 4
@@ -116,7 +119,7 @@ def _rerun(file: Path, out: Path | None) -> int:
     if out is not None:
         raise HarnessError("-o: a re-run that changes nothing has nothing to write")
     with DpReader(file) as reader:
-        records = unbroken(reader.records())
+        records = unbroken(_with_progress(reader))
         comparison = compare(records, reader.schema, load_planner(reader.info.planner))
         done = f"{comparison.call_count} calls, {comparison.record_count} records"
         if comparison.difference is not None:
@@ -148,7 +151,7 @@ def _what_if(
         planner_class = load_planner(name)
         info = replace(reader.info, planner=Path(name).name)
         recorded, again = History(reader.schema, reader.info), History(native_schema(), info)
-        records = taken(recorded, unbroken(reader.records()), file)
+        records = taken(recorded, unbroken(_with_progress(reader)), file)
         with nullcontext() if out is None else DpWriter(_fresh(out / "drive.dp"), info) as writer:
             stream = RecordStream([again.take])
             if writer is not None:
@@ -168,9 +171,22 @@ def _export(file: Path, style: str, out: Path) -> int:
     write = {"csv": write_csv, "parquet": write_parquet, "mcap": write_mcap}[style]
     with DpReader(file) as reader:
         out.mkdir(parents=True, exist_ok=True)
-        for path, count in write(reader, out):
+        for path, count in write(reader.schema, _with_progress(reader), out):
             click.echo(f"{path}: {count} records")
         return _report(file, reader.damage)
+
+
+def _with_progress(reader: "DpReader") -> "Iterator[Record]":
+    """Yield all records; show how far it is, where there is a terminal to show it on."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task(reader.path.name, total=reader.path.stat().st_size)
+        for record in reader.records():
+            bar.advance(task, len(record.payload))
+            yield record
 
 
 def _fresh(path: Path) -> Path:

@@ -24,6 +24,8 @@ Message = npt.NDArray[np.void]
 
 ByteOrder = Literal["little", "big"]
 
+RECORD_SIZE_MAX_BYTES = 1 << 24
+
 _NUMBERS = {
     "double": "f8",
     "float": "f4",
@@ -101,9 +103,7 @@ class Schema:
 
     def dtype(self, type_name: str) -> np.dtype[Any]:
         """Return the dtype of a record type."""
-        if type_name not in self._dtypes:
-            self._dtypes[type_name] = self._make_dtype(type_name, ())
-        return self._dtypes[type_name]
+        return self._dtype(type_name, ())
 
     def kind_dtype(self, kind: int) -> np.dtype[Any]:
         """Return the dtype of a kind."""
@@ -123,6 +123,11 @@ class Schema:
             )
         return np.frombuffer(payload.ljust(dtype.itemsize, b"\0"), dtype=dtype).reshape(())
 
+    def _dtype(self, type_name: str, parents: tuple[str, ...]) -> np.dtype[Any]:
+        if type_name not in self._dtypes:
+            self._dtypes[type_name] = self._make_dtype(type_name, parents)
+        return self._dtypes[type_name]
+
     def _make_dtype(self, type_name: str, parents: tuple[str, ...]) -> np.dtype[Any]:
         if type_name in _NUMBERS:
             order = "<" if self.byte_order == "little" else ">"
@@ -130,7 +135,12 @@ class Schema:
         if type_name not in self.records or type_name in parents:
             raise ValueError(f"unknown type {type_name!r} in the schema")
         definition = self.records[type_name]
-        inner = [self._make_dtype(item.type, (*parents, type_name)) for item in definition.fields]
+        if definition.size_bytes > RECORD_SIZE_MAX_BYTES:
+            raise ValueError(
+                f"{type_name} of {definition.size_bytes} bytes, expected at most"
+                f" {RECORD_SIZE_MAX_BYTES}"
+            )
+        inner = [self._dtype(item.type, (*parents, type_name)) for item in definition.fields]
         return np.dtype(
             {
                 "names": [item.name for item in definition.fields],

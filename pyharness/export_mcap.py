@@ -4,19 +4,18 @@
 import base64
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from pyharness.dp import Kind, Message
-from pyharness.dp_file import DpReader
+from pyharness.dp import Kind, Message, Schema
 from pyharness.errors import HarnessError
 from pyharness.evr import evr_table, evr_text
 from pyharness.export_tables import Written, leaves
-from pyharness.records import KIND_END
+from pyharness.records import KIND_END, Record
 
 Json = dict[str, Any]
 Messages = Iterator[tuple[str, str, Json]]
@@ -28,7 +27,7 @@ LOG_LEVEL_WARNING = 3
 NUMERIC_TYPES = {"u1": 1, "i1": 2, "u2": 3, "i2": 4, "u4": 5, "i4": 6, "f4": 7, "f8": 8}
 
 
-def write_mcap(reader: DpReader, folder: Path) -> Written:
+def write_mcap(schema: Schema, records: Iterable[Record], folder: Path) -> Written:
     """Write drive.mcap.
 
     Raises:
@@ -44,10 +43,10 @@ def write_mcap(reader: DpReader, folder: Path) -> Written:
         writer = Writer(file)
         writer.start(library="enav-sim")
         channels: dict[str, int] = {}
-        for topic, schema, time_s, message in _messages(reader):
+        for topic, name, time_s, message in _messages(schema, records):
             if topic not in channels:
-                text = json.dumps(SCHEMAS.get(schema, {"type": "object"})).encode()
-                number = writer.register_schema(schema, "jsonschema", text)
+                text = json.dumps(SCHEMAS.get(name, {"type": "object"})).encode()
+                number = writer.register_schema(name, "jsonschema", text)
                 channels[topic] = writer.register_channel(topic, "json", number)
             time_ns = _nanoseconds(time_s)
             data = json.dumps(message, separators=(",", ":"), allow_nan=False).encode()
@@ -57,18 +56,18 @@ def write_mcap(reader: DpReader, folder: Path) -> Written:
     return [(path, count)]
 
 
-def _messages(reader: DpReader) -> Iterator[tuple[str, str, float, Json]]:
+def _messages(layout: Schema, records: Iterable[Record]) -> Iterator[tuple[str, str, float, Json]]:
     """Yield topic, schema, time and message: the standard ones, and the numbers of every record."""
     up = {"x": 1.0, "y": 0.0, "z": 0.0, "w": 0.0}  # half a turn about north
     yield "/tf", "foxglove.FrameTransform", 0.0, _transform(0.0, WORLD, SITE, (0.0, 0.0, 0.0), up)
-    for record in reader.records():
+    for record in records:
         if record.kind == KIND_END:
             continue
-        message = reader.schema.decode(record.kind, record.payload)
+        message = layout.decode(record.kind, record.payload)
         standard = _STANDARD.get(record.kind, _nothing)
         for topic, schema, data in standard(message, record.time_s):
             yield topic, schema, record.time_s, data
-        name = reader.schema.kinds[record.kind].name.lower()
+        name = layout.kinds[record.kind].name.lower()
         yield f"/records/{name}", f"enav.{name}", record.time_s, _numbers(message)
 
 

@@ -2,7 +2,7 @@
 """The records of a drive as tables, one for each kind: CSV and Parquet."""
 
 import csv
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pyharness.dp_file import DpReader
+from pyharness.dp import Schema
 from pyharness.errors import HarnessError
 from pyharness.records import KIND_END, Record
 
@@ -46,27 +46,27 @@ class _Pile:
     size_bytes: int = 0
 
 
-def batches(reader: DpReader) -> Iterator[Batch]:
-    """Yield all intact records, those of one kind together, each kind in order."""
+def batches(schema: Schema, records: Iterable[Record]) -> Iterator[Batch]:
+    """Yield records, those of one kind together, each kind in order."""
     piles: dict[int, _Pile] = {}
-    for record in reader.records():
+    for record in records:
         if record.kind == KIND_END:
             continue
         pile = piles.setdefault(record.kind, _Pile())
         pile.records.append(record)
-        pile.size_bytes += reader.schema.kind_dtype(record.kind).itemsize
+        pile.size_bytes += schema.kind_dtype(record.kind).itemsize
         if pile.size_bytes >= BATCH_BYTES:
-            yield _decoded(reader, piles.pop(record.kind).records)
+            yield _decoded(schema, piles.pop(record.kind).records)
     for kind in sorted(piles):
-        yield _decoded(reader, piles[kind].records)
+        yield _decoded(schema, piles[kind].records)
 
 
-def _decoded(reader: DpReader, records: Sequence[Record]) -> Batch:
+def _decoded(schema: Schema, records: Sequence[Record]) -> Batch:
     kind = records[0].kind
-    dtype = reader.schema.kind_dtype(kind)
+    dtype = schema.kind_dtype(kind)
     data = b"".join(record.payload.ljust(dtype.itemsize, b"\0") for record in records)
     return Batch(
-        name=reader.schema.kinds[kind].name,
+        name=schema.kinds[kind].name,
         sequence=[record.sequence for record in records],
         time_s=[record.time_s for record in records],
         fields=np.frombuffer(data, dtype),
@@ -108,7 +108,7 @@ def used_counts(batch: Batch, name: str, column: npt.NDArray[Any]) -> npt.NDArra
 # ------------------------------------------------------------------ CSV
 
 
-def write_csv(reader: DpReader, folder: Path) -> Written:
+def write_csv(schema: Schema, records: Iterable[Record], folder: Path) -> Written:
     """Write KIND.csv with a row for each record, and KIND.FIELD.csv for every longer array."""
     rows: dict[Path, int] = {}
     with ExitStack() as files:
@@ -122,7 +122,7 @@ def write_csv(reader: DpReader, folder: Path) -> Written:
             writers[path].writerows(zip(*columns, strict=True))
             rows[path] = rows.get(path, 0) + len(columns[0])
 
-        for batch in batches(reader):
+        for batch in batches(schema, records):
             header = ["sequence", "record_time_s"]
             columns: list[list[Any]] = [batch.sequence, batch.time_s]
             for name, column in leaves(batch.fields):
@@ -167,7 +167,7 @@ def _shown(values: npt.NDArray[Any]) -> list[Any]:
 _MISSING = "--export parquet needs pyarrow: pip install 'enav-sim[export]'"
 
 
-def write_parquet(reader: DpReader, folder: Path) -> Written:
+def write_parquet(schema: Schema, records: Iterable[Record], folder: Path) -> Written:
     """Write KIND.parquet: a row for each record, arrays as lists.
 
     Raises:
@@ -183,7 +183,7 @@ def write_parquet(reader: DpReader, folder: Path) -> Written:
     rows: dict[Path, int] = {}
     with ExitStack() as files:
         writers: dict[Path, Any] = {}
-        for batch in batches(reader):
+        for batch in batches(schema, records):
             columns: dict[str, Any] = {
                 "sequence": pa.array(batch.sequence, pa.uint32()),
                 "record_time_s": pa.array(batch.time_s, pa.float64()),

@@ -157,3 +157,15 @@ def test_an_arc_is_evaluated_on_a_drive_and_on_a_terrain(enav):
     code, out, _ = enav("evaluate-arc", "t.pgm", "--pose", "0,0,45", "--arc", "3,20")
     assert code == 0
     assert out.startswith("safe\narc of 3.00 m, +20.0 deg from north 0.00 m")
+
+
+@pytest.mark.parametrize(
+    ("style", "name"), [("csv", "TRUTH.csv"), ("parquet", "TRUTH.parquet"), ("mcap", "drive.mcap")]
+)
+def test_a_drive_is_exported(enav, tmp_path, style, name):
+    code, out, err = enav("replay", "drive.dp", "--export", style, "-o", "out")
+    assert (code, err) == (0, "")
+    assert f"out/{name}: " in out
+    assert (tmp_path / "out" / name).stat().st_size > 10_000
+    code, _, err = enav("replay", "drive.dp", "--export", style, "-o", "out")
+    assert (code, "--force" in err) == (2, True)

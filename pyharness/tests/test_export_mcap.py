@@ -23,7 +23,7 @@ def exported(tmp_path_factory):
     folder = tmp_path_factory.mktemp("mcap")
     record_drive(folder / "drive.dp", {"records": "full"})
     with DpReader(folder / "drive.dp") as reader:
-        ((path, count),) = write_mcap(reader, folder)
+        ((path, count),) = write_mcap(reader.schema, reader.records(), folder)
     messages, schemas = {}, {}
     with path.open("rb") as file:
         for schema, channel, message in reader_of(file).iter_messages():
@@ -110,7 +110,7 @@ def test_the_same_drive_gives_the_same_bytes(exported, tmp_path):
     path, _, _ = exported
     (tmp_path / "again").mkdir()
     with DpReader(path) as reader:
-        write_mcap(reader, tmp_path / "again")
+        write_mcap(reader.schema, reader.records(), tmp_path / "again")
     assert (tmp_path / "again/drive.mcap").read_bytes() == (path.parent / "drive.mcap").read_bytes()
 
 
@@ -120,4 +120,4 @@ def test_without_mcap_one_line_names_the_extra(exported, tmp_path, monkeypatch):
         DpReader(exported[0]) as reader,
         pytest.raises(HarnessError, match=r"pip install 'enav-sim\[export\]'"),
     ):
-        write_mcap(reader, tmp_path)
+        write_mcap(reader.schema, reader.records(), tmp_path)

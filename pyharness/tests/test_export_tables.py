@@ -31,7 +31,7 @@ def rows(path):
 
 def test_every_kind_has_a_csv_file_with_a_row_for_every_record(quick_drive, messages, tmp_path):
     with DpReader(quick_drive) as reader:
-        written = dict(write_csv(reader, tmp_path))
+        written = dict(write_csv(reader.schema, reader.records(), tmp_path))
     assert set(written) == set(tmp_path.iterdir())
     for kind, items in messages.items():
         path = tmp_path / f"{Kind(kind).name}.csv"
@@ -40,7 +40,7 @@ def test_every_kind_has_a_csv_file_with_a_row_for_every_record(quick_drive, mess
 
 def test_csv_numbers_are_exact(quick_drive, messages, tmp_path):
     with DpReader(quick_drive) as reader:
-        write_csv(reader, tmp_path)
+        write_csv(reader.schema, reader.records(), tmp_path)
     for row, (record, message) in zip(
         rows(tmp_path / "TRUTH.csv"), messages[Kind.TRUTH], strict=True
     ):
@@ -56,7 +56,7 @@ def test_csv_numbers_are_exact(quick_drive, messages, tmp_path):
 
 def test_arrays_end_with_the_entries_in_use(quick_drive, messages, tmp_path):
     with DpReader(quick_drive) as reader:
-        write_csv(reader, tmp_path)
+        write_csv(reader.schema, reader.records(), tmp_path)
     answers = [message for _, message in messages[Kind.EVALUATE_ARC_OUT]]
     bounds = rows(tmp_path / "EVALUATE_ARC_OUT.bounds.csv")
     assert len(bounds) == sum(int(answer["pose_count"]) for answer in answers)
@@ -76,7 +76,7 @@ def test_parquet_holds_the_same_numbers(quick_drive, messages, tmp_path, is_swap
         path = tmp_path / "swapped.dp"
         write_swapped(quick_drive, path)
     with DpReader(path) as reader:
-        written = dict(write_parquet(reader, tmp_path))
+        written = dict(write_parquet(reader.schema, reader.records(), tmp_path))
     assert len(written) == len(messages)
     for kind, items in messages.items():
         table = parquet.read_table(tmp_path / f"{Kind(kind).name}.parquet").to_pydict()
@@ -95,4 +95,4 @@ def test_without_pyarrow_one_line_names_the_extra(quick_drive, tmp_path, monkeyp
         DpReader(quick_drive) as reader,
         pytest.raises(HarnessError, match=r"pip install 'enav-sim\[export\]'"),
     ):
-        write_parquet(reader, tmp_path)
+        write_parquet(reader.schema, reader.records(), tmp_path)
