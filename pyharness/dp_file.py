@@ -203,8 +203,9 @@ class DpReader:
         if self._lost_count == 0:
             return first
         places = len(self._damages)
-        lost = f"{self._lost_count} records lost in {places} place{'s' if places > 1 else ''}"
-        return Damage(first.offset, f"{first.reason}; {lost}")
+        lost = f"{self._lost_count} record{'s' if self._lost_count > 1 else ''} lost"
+        where = f" in {places} places" if places > 1 else ""
+        return Damage(first.offset, f"{first.reason}; {lost}{where}")
 
     def records(self) -> Iterator[Record]:
         """Yield the intact records from the first on."""
@@ -321,7 +322,8 @@ class DpReader:
             raise _DamageError(f"a record of kind {kind} with {size} bytes is too long")
         payload = self._take(size, "a record")
         if payload_check != zlib.crc32(payload):
-            raise _DamageError("the checksum of the record does not match")
+            name = self.schema.kinds[kind].name if kind != KIND_END else "the end"
+            raise _DamageError(f"the checksum of record {found}, {name}, does not match")
         if any(self._take(_padding(size), "the padding of a record")):
             raise _DamageError("the padding of the record is not zero")
         if kind == KIND_END:

@@ -236,7 +236,8 @@ def test_the_checksum_names_a_flipped_input(quick_drive, tmp_path):
         comparison = compare(unbroken(reader.records()), reader.schema, Enav)
         assert comparison.difference is None
         assert reader.damage.offset == starts[index]
-        assert "checksum of the record does not match" in reader.damage.reason
+        named = f"the checksum of record {index}, PROCESS_DISPARITY_IN, does not match"
+        assert reader.damage.reason.startswith(named)
     # the same with the checksum mended
     start, size = starts[index], len(records[index].payload)
     payload = bytes(data[start + 32 : start + 32 + size])
