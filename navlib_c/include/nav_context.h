@@ -26,6 +26,7 @@ typedef struct
     nav_heightmap_t heightmap;
     nav_surface_t surface;
     nav_costmap_t costmap;
+    nav_relief_t relief;
     nav_costmap_scratch_t scratch;
     nav_global_t global;
     nav_tree_t tree;

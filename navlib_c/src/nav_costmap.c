@@ -10,6 +10,7 @@
 
 #include "nav_guard.h"
 #include "nav_math.h"
+#include "nav_minmax.h"
 
 #define NAV_SIZE ((int32_t) NAV_COSTMAP_SIZE)
 #define NAV_BLOCK ((int32_t) NAV_CELLS_PER_COST_CELL)

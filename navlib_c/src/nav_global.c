@@ -9,6 +9,7 @@
 
 #include "nav_guard.h"
 #include "nav_math.h"
+#include "nav_minmax.h"
 
 #define NAV_SIZE ((int32_t) NAV_COSTMAP_SIZE)
 #define NAV_CELLS ((uint32_t) NAV_COSTMAP_SIZE * (uint32_t) NAV_COSTMAP_SIZE)

@@ -388,6 +388,7 @@ static void analyze(nav_ctx_t *ctx,
     out->is_recentered = nav_costmap_recenter(&ctx->costmap, &ctx->params, x_m, y_m) ? 1U : 0U;
     nav_costmap_update(&ctx->costmap, &ctx->scratch, &ctx->params, &ctx->surface, &ctx->kioz,
                        in->global_position_m);
+    nav_relief_update(&ctx->relief, &ctx->costmap, &ctx->surface);
     ctx->is_analyzed = 1U;
 
     for (uint32_t k = 0U; k < (uint32_t) NAV_COSTMAP_CELLS; k++)
@@ -515,7 +516,8 @@ static void report_selection(const nav_ctx_t *ctx, double time_s, const nav_sele
 
 static nav_ace_scene_t ace_scene(const nav_ctx_t *ctx)
 {
-    const nav_ace_scene_t scene = {&ctx->params, &ctx->vehicle, &ctx->surface, &ctx->costmap};
+    const nav_ace_scene_t scene = {&ctx->params, &ctx->vehicle, &ctx->surface, &ctx->costmap,
+                                   &ctx->relief};
     return scene;
 }
 
