@@ -362,7 +362,7 @@ types:
           - id: params
             type: f8
             repeat: expr
-            repeat-expr: 57
+            repeat-expr: 56
             doc: 'nav_params_t, in the order of its table'
       nav_init_out_t:
         seq:

@@ -1,4 +1,4 @@
-# ksy sha256 886a1cef9795c93d8d5100ba01c4e826fbc0e72e70bd9c4b2b8c3c8d2fa583dd
+# ksy sha256 24006c308281967056580cc79aecdcee9ea66b27148c0905a53e5f94397fd1e1
 # This is a generated file! Please edit source .ksy file and use kaitai-struct-compiler to rebuild
 # type: ignore
 
@@ -739,14 +739,14 @@ class EnavDp(KaitaiStruct):
             def _read_le(self):
                 self.time_s = self._io.read_f8le()
                 self.params = []
-                for i in range(57):
+                for i in range(56):
                     self.params.append(self._io.read_f8le())
 
 
             def _read_be(self):
                 self.time_s = self._io.read_f8be()
                 self.params = []
-                for i in range(57):
+                for i in range(56):
                     self.params.append(self._io.read_f8be())
 
 
