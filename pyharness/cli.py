@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command line: `enav COMMAND`. Heavy modules are imported inside the commands.
 
-Exit codes: 0 done or goal reached, 2 bad input, 3 the drive ended in a fault, 130 interrupted.
+Exit codes: 0 done or goal reached, 2 bad input, 3 the drive ended in a fault, 4 a re-run differs,
+130 interrupted.
 """
 
 import sys
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from pyharness.cli_modes import modes_command
+from pyharness.cli_records import evaluate_arc_command, replay_command
 from pyharness.cli_sim import stereo_noise
 from pyharness.cli_terrain import terrain
 from pyharness.cli_types import Assignment, Numbers, as_options
@@ -62,6 +64,8 @@ def _fail(message: str) -> int:
 cli.add_command(terrain)
 cli.add_command(modes_command)
 terrain.add_command(stereo_noise)
+cli.add_command(replay_command)
+cli.add_command(evaluate_arc_command)
 
 
 # ------------------------------------------------------------------ enav drive

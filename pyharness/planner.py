@@ -17,17 +17,19 @@ recorded by the base class, so recording, metrics and pictures are the same for 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 
-from pyharness.dp import Kind, Message, new_message, used_bytes
+from pyharness.dp import Kind, Message, init_request, new_message, used_bytes
 from pyharness.records import Sink
 
 
 class Planner(ABC):
     """Base class of planners."""
 
-    def __init__(self, params: Mapping[str, float], sink: Sink) -> None:
-        """Keep Navlib's parameters, which also describe the vehicle, and where records go."""
+    def __init__(self, params: Mapping[str, float], sink: Sink, time_s: float = 0.0) -> None:
+        """Keep and record Navlib's parameters, which also describe the vehicle."""
         self.params = params
         self._sink = sink
+        request = init_request(params, time_s)
+        self._recorded(Kind.INIT_IN, Kind.INIT_OUT, request, self._init)
 
     def set_kioz(self, request: Message) -> Message:
         """Replace the keep-in and keep-out zones."""
@@ -57,6 +59,12 @@ class Planner(ABC):
         return self._recorded(
             Kind.EVALUATE_ARC_IN, Kind.EVALUATE_ARC_OUT, request, self._evaluate_arc
         )
+
+    def _init(self, request: Message) -> Message:  # noqa: ARG002
+        """Answer that the parameters are taken."""
+        answer = new_message(Kind.INIT_OUT)
+        answer["refused_index"] = len(self.params)
+        return answer
 
     def _set_kioz(self, request: Message) -> Message:
         """Take zones; the default ignores them, which is right only when there are none."""

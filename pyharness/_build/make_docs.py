@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Write the pages of docs/ that are made from the C tables: `make docs`."""
+"""Write what is made from the C tables, pages of docs/ and enav_dp.ksy: `make docs`."""
 
 from collections.abc import Mapping
 from pathlib import Path
 
 from pyharness import tables
+from pyharness._build import make_ksy
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 NOTE = "<!-- made by `make docs` from the tables of navlib_c/include: do not edit -->\n\n"
@@ -37,6 +38,7 @@ def pages() -> Mapping[str, str]:
 def main() -> None:
     for name, text in pages().items():
         (DOCS / name).write_text(text, encoding="utf-8")
+    make_ksy.main()
 
 
 if __name__ == "__main__":

@@ -12,11 +12,10 @@ from pyharness.records import Sink
 class Enav(Planner):
     """Hands every call to Navlib and passes on what Navlib sends."""
 
-    def __init__(self, params: Mapping[str, float], sink: Sink) -> None:
+    def __init__(self, params: Mapping[str, float], sink: Sink, time_s: float = 0.0) -> None:
         """Start Navlib with the parameters."""
-        super().__init__(params, sink)
-        self._navlib = Navlib(params)
-        self._send(self._navlib.drain())
+        self._navlib = Navlib(params, time_s)
+        super().__init__(params, sink, time_s)  # sends what nav_init has sent
 
     def _set_kioz(self, request: Message) -> Message:
         return self._navlib.set_kioz(request)

@@ -13,10 +13,12 @@ def test_what_goes_in_and_out_of_any_planner_is_recorded(fake_planner):
     request["time_s"] = 3.0
     planner.evaluate_arc(request)
     assert [(item.kind, item.time_s) for item in records] == [
+        (Kind.INIT_IN, 0.0),
+        (Kind.INIT_OUT, 0.0),
         (Kind.EVALUATE_ARC_IN, 3.0),
         (Kind.EVALUATE_ARC_OUT, 3.0),
     ]
-    assert records[0].payload == request.tobytes()
+    assert records[2].payload == request.tobytes()
 
 
 def test_a_planner_without_zones_refuses_them(fake_planner):
