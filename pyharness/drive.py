@@ -4,9 +4,10 @@
 from pyharness.executive import Executive, SafetyWatch
 from pyharness.navlib import Zones
 from pyharness.planner import Planner
-from pyharness.records import KIND_END, Outcome, RecordStream, end_payload
+from pyharness.records import KIND_END, Outcome, RecordStream, Sink, end_payload
 from pyharness.scenario import Scenario, drive_info, navlib_params, zones_request
 from pyharness.thinker import Thinker
+from sim.random_streams import rng_for
 from sim.terrain import Terrain
 from sim.vehicle import Vehicle
 from sim.world import World, true_limit_violation
@@ -32,7 +33,7 @@ def drive(
     executive = Executive(
         world,
         lambda: world.image(scenario.executive.look_around_deg),
-        Thinker(planner_class(navlib_params(scenario), stream.publish), scenario.executive.compute),
+        Thinker(make_planner(scenario, planner_class, stream.publish), scenario.executive.compute),
         info.waypoints,
         scenario.executive,
         SafetyWatch(
@@ -44,3 +45,9 @@ def drive(
     outcome = executive.run(zones)
     stream.publish(KIND_END, world.time_s, end_payload(outcome))
     return outcome
+
+
+def make_planner(scenario: Scenario, planner_class: type[Planner], sink: Sink) -> Planner:
+    """Start a planner with the parameters and the random stream of a resolved scenario."""
+    rng = rng_for(scenario.seed, "planner")
+    return planner_class(navlib_params(scenario), sink, scenario.planner_params, rng)

@@ -3,6 +3,8 @@
 
 from collections.abc import Callable, Mapping
 
+import numpy as np
+
 from pyharness.dp import Message
 from pyharness.navlib import Navlib
 from pyharness.planner import Planner
@@ -12,9 +14,15 @@ from pyharness.records import Sink
 class Enav(Planner):
     """Hands every call to Navlib and passes on what Navlib sends."""
 
-    def __init__(self, params: Mapping[str, float], sink: Sink) -> None:
+    def __init__(
+        self,
+        params: Mapping[str, float],
+        sink: Sink,
+        own_params: Mapping[str, float] | None = None,
+        rng: np.random.Generator | None = None,
+    ) -> None:
         """Start Navlib with the parameters."""
-        super().__init__(params, sink)
+        super().__init__(params, sink, own_params, rng)
         self._navlib = Navlib(params)
         self._send(self._navlib.drain())
 
