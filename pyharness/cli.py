@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pyharness.cli_compare import compare
 from pyharness.cli_sim import stereo_noise
 from pyharness.cli_terrain import terrain
 from pyharness.cli_types import Assignment, Numbers, as_options
@@ -56,6 +57,7 @@ def _fail(message: str) -> int:
     return EXIT_BAD_INPUT
 
 
+cli.add_command(compare)
 cli.add_command(terrain)
 terrain.add_command(stereo_noise)
 
@@ -68,7 +70,7 @@ terrain.add_command(stereo_noise)
 @click.option("--start", type=Numbers("N,E,YAW_DEG"), help="Where the rover starts (-40,0,0).")
 @click.option("--goal", type=Numbers("N,E"), help="Where it goes (40,0).")
 @click.option("--mode", type=click.Choice(MODES), help="How it goes there (avoid_all).")
-@click.option("--planner", help="enav, file.py:Class, or an installed planner.")
+@click.option("--planner", help="enav, gestalt, rrtsharp, file.py:Class, or an installed one.")
 @click.option("--scenario", "scenario_file", type=click.Path(path_type=Path), help="YAML file.")
 @click.option("--set", "settings", type=Assignment(), multiple=True, help="Scenario key = value.")
 @click.option("--seed", type=int, help="Of terrain and noise.")
