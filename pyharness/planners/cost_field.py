@@ -17,8 +17,9 @@ from pyharness.planners.goodness import GoodnessMap
 SIDE = 128
 MARGIN = 32  # cells from the edge at which the field moves along with the rover
 CELL_MAP_CELLS = 2  # goodness cells along a side of a cell
-# costs per metre; the worst is finite: from wherever the rover stands there is a way
-COST_UNKNOWN, COST_IMPASSABLE, GOODNESS_LEAST = 2.0, 50.0, 0.1
+# costs per metre, from 1 on the best ground to COST_POOR on the worst that is passable; unknown
+# ground lies between; impassable ground is finite: from wherever the rover stands there is a way
+COST_POOR, COST_UNKNOWN, COST_IMPASSABLE = 3.0, 2.0, 50.0
 
 STEPS = ((0, 1), (1, 0), (1, 1), (1, -1))
 
@@ -46,7 +47,7 @@ class CostField:
         least = np.full((SIDE, SIDE), np.inf)
         np.minimum.at(least, (rows, cols), goodness)
         seen = np.isfinite(least)
-        passable = 1.0 / np.maximum(least[seen], GOODNESS_LEAST)
+        passable = COST_POOR - (COST_POOR - 1.0) * least[seen]
         self._cost[seen] = np.where(least[seen] > 0.0, passable, COST_IMPASSABLE)
 
     def cost_to_go(self, goal_m: Floats, points_m: Floats) -> Floats:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from pyharness.dp import Kind, Message, new_message
 from pyharness.params import ParamDefinition
 from pyharness.planners.arcs import Floats, Place, arc_points
-from pyharness.planners.cost_field import CostField
+from pyharness.planners.cost_field import COST_UNKNOWN, CostField
 from pyharness.planners.goodness import GoodnessMap, Heights, Limits, goodness_map
 from pyharness.planners.mapped import (
     MappedPlanner,
@@ -214,7 +214,8 @@ class Gestalt(MappedPlanner):
         goal_m = np.array([float(request["goal"]["x_site_m"]), float(request["goal"]["y_site_m"])])
         here_m, ends_m = np.array([place.x_m, place.y_m]), points[:, -1]
         if self._field is not None:
-            return falling_votes(self._field.cost_to_go(goal_m, ends_m))
+            back_and_forth = 2.0 * self.own_params["arc_length_m"] * COST_UNKNOWN
+            return falling_votes(self._field.cost_to_go(goal_m, ends_m), back_and_forth)
         along, ahead = ends_m - here_m, goal_m - here_m
         cosine = along @ ahead / (np.hypot(*along.T) * np.hypot(*ahead) + 1e-9)
         return np.asarray(0.5 + 0.5 * cosine)
@@ -295,10 +296,9 @@ def first_reasons(reasons: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
     return np.asarray(reasons[np.arange(len(reasons)), first])
 
 
-def falling_votes(cost: Floats) -> Floats:
-    """Return 1 for the least cost down to 0 for the largest."""
-    span = cost.max() - cost.min()
-    return np.asarray((cost.max() - cost) / span if span > 0.0 else np.ones_like(cost))
+def falling_votes(cost: Floats, span: float) -> Floats:
+    """Return 1 for the least cost down to 0 for what costs more by the span."""
+    return np.asarray(np.clip(1.0 - (cost - cost.min()) / span, 0.0, 1.0))
 
 
 def _steering_votes(candidates: Candidates, request: Message, curvature_max_per_m: float) -> Floats:

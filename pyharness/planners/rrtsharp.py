@@ -11,6 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
+from scipy.ndimage import grey_dilation
 
 from pyharness.dp import Kind, Message, new_message
 from pyharness.params import ParamDefinition
@@ -49,9 +50,14 @@ PARAMS = (
         "ACE, which RRT# has not",
     ),
     ParamDefinition(
+        "grow_m", 0.5, 0.0, 3.0, "m",
+        "cells this near to a blocked one are blocked too [A]: half the rover's width over the "
+        "wheels is more than half a patch",
+    ),
+    ParamDefinition(
         "start_free_m", 1.5, 0.0, 5.0, "m",
-        "cells blocked by terrain this near to the rover count as unknown ground [A]: it must be "
-        "able to leave",
+        "when the rover stands in a blocked cell, cells that terrain blocks this near to it count "
+        "as unknown ground [A]: it must be able to leave",
     ),
     ParamDefinition(
         "lookahead_m", 2.0, 0.2, 10.0, "m",
@@ -190,8 +196,12 @@ class RrtSharp(MappedPlanner):
             float(goal["x_site_m"]),
             float(goal["y_site_m"]),
             float(goal["radius_m"]),
-            self.params["cost_unknown_factor"] / self.params["speed_max_m_per_s"],
+            self._unknown_cost_s_per_m,
         )
+
+    @property
+    def _unknown_cost_s_per_m(self) -> float:
+        return self.params["cost_unknown_factor"] / self.params["speed_max_m_per_s"]
 
     def _field(self, place: Place, use_terrain: bool, use_zones: bool) -> tuple[Field, Floats]:
         """Return the costs around a place, and the reasons of blocked cells."""
@@ -216,14 +226,25 @@ class RrtSharp(MappedPlanner):
             reasons[cells["roughness_m2"] > rough_m2] = Reason.CLEARANCE
             steep = cells["terrain_reason"] != Reason.NONE
             reasons[steep] = cells["terrain_reason"][steep]
-            beside = (reasons != Reason.NONE) & (away_m <= self.own_params["start_free_m"])
-            reasons[beside] = Reason.NONE
-            unknown_cost = self.params["cost_unknown_factor"] / self.params["speed_max_m_per_s"]
-            cost[beside] = np.maximum(cost[beside], unknown_cost)
+            _grow(reasons, self.own_params["grow_m"] / cell_m)
+            if (reasons[away_m == away_m.min()] != Reason.NONE).any():
+                beside = (reasons != Reason.NONE) & (away_m <= self.own_params["start_free_m"])
+                reasons[beside] = Reason.NONE
+                cost[beside] = np.maximum(cost[beside], self._unknown_cost_s_per_m)
         if use_zones:
             reasons[cells["is_forbidden"] != 0] = Reason.KIOZ
         cost[reasons != Reason.NONE] = np.inf
         return Field(cost, float(south_m), float(west_m), cell_m), reasons
+
+
+def _grow(reasons: Floats, radius_cells: float) -> None:
+    """Let blocked cells block those around them."""
+    reach = math.floor(radius_cells)
+    offsets = np.arange(-reach, reach + 1)
+    disc = np.hypot(offsets[:, None], offsets) <= radius_cells
+    grown = grey_dilation(reasons, footprint=disc, mode="nearest")
+    free = reasons == Reason.NONE
+    reasons[free] = grown[free]
 
 
 def point_along(points_m: Floats, distance_m: float) -> Floats:

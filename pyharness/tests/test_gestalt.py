@@ -118,6 +118,5 @@ def test_the_first_reason_along_an_arc_counts():
     assert first_reasons(reasons).tolist() == [4, 0]
 
 
-def test_votes_fall_from_the_least_cost_to_the_largest():
-    assert falling_votes(np.array([3.0, 1.0, 2.0])) == pytest.approx([0.0, 1.0, 0.5])
-    assert falling_votes(np.array([2.0, 2.0])) == pytest.approx([1.0, 1.0])
+def test_votes_fall_from_the_least_cost_on():
+    assert falling_votes(np.array([3.0, 1.0, 2.0, 99.0]), 4.0) == pytest.approx([0.5, 1.0, 0.75, 0])

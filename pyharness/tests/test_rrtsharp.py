@@ -63,6 +63,12 @@ def test_a_rover_in_a_blocked_cell_may_leave_but_not_go_on():
     assert not scene.evaluate(3.0)["is_safe"]
 
 
+def test_a_blocked_cell_near_a_rover_on_free_ground_is_blocked():
+    scene = Scene(RrtSharp, rocks((2.4, 0.0, 0.3, 0.6))).analyze()
+    answer = scene.evaluate(1.0)
+    assert (answer["is_safe"], answer["reason"]) == (0, Reason.CLEARANCE)
+
+
 def test_a_rover_walled_in_has_no_path():
     angles_rad = np.linspace(0.0, 2.0 * math.pi, 40, endpoint=False)
     ring = [(5.0 * math.cos(a), 5.0 * math.sin(a), 0.4, 0.8) for a in angles_rad]
