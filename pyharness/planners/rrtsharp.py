@@ -45,7 +45,7 @@ PARAMS = (
         "half side of the part of the costmap that is searched [A]: stereo sees not much farther",
     ),
     ParamDefinition(
-        "roughness_max_m", 0.04, 0.005, 10.0, "m",
+        "roughness_max_m", 0.06, 0.005, 10.0, "m",
         "rms distance from a costmap cell's plane that blocks it [A]: the costmap leaves rocks to "
         "ACE, which RRT# has not",
     ),

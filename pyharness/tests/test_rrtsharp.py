@@ -63,6 +63,18 @@ def test_a_rover_in_a_blocked_cell_may_leave_but_not_go_on():
     assert not scene.evaluate(3.0)["is_safe"]
 
 
+def test_blocked_cells_block_those_beside_them_as_far_as_they_grow():
+    at_m = [
+        float(
+            Scene(RrtSharp, FIELD_OF_ROCKS, {"grow_m": grow_m})
+            .analyze()
+            .evaluate(6.0)["failing_at"]
+        )
+        for grow_m in (0.0, 0.5, 1.0)
+    ]
+    assert np.diff(at_m) == pytest.approx([-0.5, -0.5])
+
+
 def test_a_blocked_cell_near_a_rover_on_free_ground_is_blocked():
     scene = Scene(RrtSharp, rocks((2.4, 0.0, 0.3, 0.6))).analyze()
     answer = scene.evaluate(1.0)
