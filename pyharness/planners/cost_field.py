@@ -50,18 +50,18 @@ class CostField:
         passable = COST_POOR - (COST_POOR - 1.0) * least[seen]
         self._cost[seen] = np.where(least[seen] > 0.0, passable, COST_IMPASSABLE)
 
-    def cost_to_go(self, goal_m: Floats, points_m: Floats) -> Floats:
-        """Return the cost from points [n, north and east] to the goal, in metres of good ground."""
+    def cost_to_go(self, goal_m: Floats, radius_m: float, points_m: Floats) -> Floats:
+        """Return the cost from points [n, north and east] to a disc, in metres of good ground."""
         centers_m = (self._origin + np.indices((SIDE, SIDE)).reshape(2, -1).T + 0.5) * self._cell_m
-        away_m = np.hypot(*(centers_m - goal_m).T)
+        away_m = np.maximum(np.hypot(*(centers_m - goal_m).T) - radius_m, 0.0)
         inside = self._cells(goal_m[None])[1][0]
         seeds = np.zeros((SIDE, SIDE), dtype=np.bool_)
         seeds[[0, -1], :] = seeds[:, [0, -1]] = not inside
-        seeds = seeds.ravel() | (away_m <= self._cell_m)
+        seeds = seeds.ravel() | (away_m == away_m.min())
         distances = self._distances(np.flatnonzero(seeds), COST_UNKNOWN * away_m[seeds])
         cells, is_inside = self._cells(points_m)
-        straight = COST_UNKNOWN * np.hypot(*(points_m - goal_m).T)
-        return np.where(is_inside, distances[cells], straight)
+        beyond_m = np.maximum(np.hypot(*(points_m - goal_m).T) - radius_m, 0.0)
+        return np.where(is_inside, distances[cells], COST_UNKNOWN * beyond_m)
 
     def _cells(self, points_m: Floats) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
         rows, cols = (np.floor(points_m / self._cell_m).astype(np.int64) - self._origin).T

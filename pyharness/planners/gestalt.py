@@ -215,7 +215,9 @@ class Gestalt(MappedPlanner):
         here_m, ends_m = np.array([place.x_m, place.y_m]), points[:, -1]
         if self._field is not None:
             back_and_forth = 2.0 * self.own_params["arc_length_m"] * COST_UNKNOWN
-            return falling_votes(self._field.cost_to_go(goal_m, ends_m), back_and_forth)
+            radius_m = float(request["goal"]["radius_m"])
+            cost = self._field.cost_to_go(goal_m, radius_m, ends_m)
+            return falling_votes(cost, back_and_forth)
         along, ahead = ends_m - here_m, goal_m - here_m
         cosine = along @ ahead / (np.hypot(*along.T) * np.hypot(*ahead) + 1e-9)
         return np.asarray(0.5 + 0.5 * cosine)

@@ -16,8 +16,8 @@ def ground(goodness, half_m=10.0, north_m=0.0):
     return GoodnessMap(values, np.zeros(values.shape, np.uint8), first, -count // 2, 0.2)
 
 
-def costs(field, goal_m, *points_m):
-    return field.cost_to_go(np.array(goal_m), np.array(points_m))
+def costs(field, goal_m, *points_m, radius_m=0.4):
+    return field.cost_to_go(np.array(goal_m), radius_m, np.array(points_m))
 
 
 def test_good_ground_costs_its_length():
@@ -58,3 +58,11 @@ def test_a_goal_outside_is_reached_through_the_edge():
     near, far = costs(field, (60.0, 0.0), (5.0, 0.0), (-5.0, 0.0))
     assert near == pytest.approx(5.0 + COST_UNKNOWN * 50.0, rel=0.08)
     assert far - near == pytest.approx(10.0, rel=0.1)
+
+
+def test_a_goal_is_reached_at_the_free_side_of_its_disc():
+    field = CostField()
+    rocky = ground(1.0)
+    rocky.goodness[88:92, 48:52] = 0.0  # the middle of the disc
+    field.take(rocky, HERE)
+    assert costs(field, (8.0, 0.0), (0.0, 0.0), radius_m=2.0)[0] == pytest.approx(6.0, abs=0.5)
