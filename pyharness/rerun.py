@@ -103,9 +103,9 @@ class Feeder:
     def _make_planner(self, request: Message) -> Planner:
         names = native_schema().parameters
         recorded = dict(zip(names, request["params"].tolist(), strict=True))
-        time_s = float(request["time_s"])
-        more = () if time_s == 0.0 else (time_s,)
-        return self._planner_class({**recorded, **self._changed_params}, self._sink, *more)
+        return self._planner_class(
+            {**recorded, **self._changed_params}, self._sink, time_s=float(request["time_s"])
+        )
 
 
 # ------------------------------------------------------------------ comparing
