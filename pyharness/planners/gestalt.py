@@ -103,6 +103,7 @@ PARAMS = (
 )  # fmt: skip
 
 SPACING_M = 0.1
+REACH_LEAST_M = 1.0
 POSES_MAX = len(new_message(Kind.EVALUATE_ARC_OUT)["bounds"])
 
 
@@ -314,10 +315,10 @@ def _steering_votes(candidates: Candidates, request: Message, curvature_max_per_
 
 
 def _reach_m(own: Mapping[str, float], place: Place, request: Message) -> float:
-    """Return how far arcs are judged: not beyond the goal."""
+    """Return how far arcs are judged: not beyond where the straight one enters the goal's disc."""
     goal = request["goal"]
     away_m = math.hypot(goal["x_site_m"] - place.x_m, goal["y_site_m"] - place.y_m)
-    return max(1.0, min(own["arc_length_m"], away_m))
+    return max(REACH_LEAST_M, min(own["arc_length_m"], away_m - float(goal["radius_m"])))
 
 
 def _zone_margin_m(request: Message) -> float:

@@ -41,6 +41,13 @@ def test_a_ring_of_rocks_leaves_no_path():
     assert (answer["arc"]["length_m"], answer["arc"]["heading_change_rad"]) == (0.0, 0.0)
 
 
+def test_rocks_in_the_middle_of_the_goals_disc_do_not_matter():
+    scene = Scene(Gestalt, rocks((5.0, 0.0, 0.3, 0.6)), goal_m=(5.0, 0.0))
+    answer = scene.analyze().select()
+    assert answer["arc"]["length_m"] == pytest.approx(1.0)
+    assert abs(answer["arc"]["heading_change_rad"]) < 0.2
+
+
 def test_unknown_ground_is_forbidden_only_where_it_is_driven_at_once():
     def seen_to(limit_m):
         return lambda north_m, _: np.where(north_m < limit_m, 0.0, np.nan)

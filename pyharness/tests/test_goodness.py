@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -38,10 +39,12 @@ def test_level_ground_is_as_good_as_can_be():
 
 
 def test_a_plain_slope_costs_its_tilt_alone_in_every_direction():
+    strict = replace(LIMITS, step_max_m=0.1)
     for azimuth_rad in (0.0, 1.0, 2.5):
         slope = math.tan(math.radians(10.0))
         goodness, _ = judged(
-            lambda n, e, a=azimuth_rad, s=slope: s * (n * math.cos(a) + e * math.sin(a))
+            lambda n, e, a=azimuth_rad, s=slope: s * (n * math.cos(a) + e * math.sin(a)),
+            limits=strict,
         )
         assert goodness == pytest.approx(0.5, abs=0.01)
 
@@ -71,7 +74,7 @@ def test_goodness_falls_with_the_height_of_a_rock():
 
 def test_rough_ground_without_steps_is_impassable_for_its_roughness():
     # a wave as long as the disc: 0.15 m rms, at most 0.15 m of rise in a step's window
-    smooth = Limits(**{**{n: getattr(LIMITS, n) for n in LIMITS.__slots__}, "step_max_m": 1.0})
+    smooth = replace(LIMITS, step_max_m=1.0)
     goodness, reason = judged(lambda n, _: 0.21 * np.cos(2 * np.pi * n / 2.8), limits=smooth)
     assert (goodness, reason) == (0.0, Reason.CLEARANCE)
 
