@@ -12,6 +12,8 @@ LEAST_BRANCH_PERCENT ?= 98
 # of the bulk check of ACE
 POSES ?= 1000000
 SEARCH_S ?= 300
+# of the reader of data product files
+FUZZ_S ?= 120
 BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 export PYTHONDONTWRITEBYTECODE :=
@@ -115,7 +117,25 @@ coverage: $(SETUP) ## coverage of Navlib by its C tests alone: build/coverage/re
 	    --least-line-percent $(LEAST_LINE_PERCENT) --least-branch-percent $(LEAST_BRANCH_PERCENT)
 
 .PHONY: verify
-verify: test lint coverage ace-guarantee koz-guarantee ## everything that is checked, and ACE against a million poses
+verify: test lint coverage records ace-guarantee koz-guarantee ## everything that is checked, and ACE against a million poses
+
+.PHONY: golden
+golden: $(SETUP) ## record the golden drive of a PowerPC again (needs its compiler and qemu)
+	@mkdir -p build
+	@.ci/powerpc_drive build/powerpc.dp
+	@xz -9 --stdout build/powerpc.dp >pyharness/tests/data/powerpc.dp.xz
+
+.PHONY: kaitai
+kaitai: $(SETUP) docs ## compile navlib_c/enav_dp.ksy for its test (needs npm)
+	@mkdir -p build/kaitai && cd build/kaitai
+	@npm install --silent kaitai-struct-compiler@0.11.0 js-yaml@4
+	@node ../../.ci/compile_ksy.js ../../navlib_c/enav_dp.ksy ../../pyharness/tests/data/enav_dp.py
+
+.PHONY: records
+records: $(SETUP) ## data product files: a PowerPC's, Kaitai's compiler, fuzzing, speed
+	@$(BIN)/python -m pytest --quiet -m verify pyharness/tests/test_foreign_files.py \
+	    pyharness/tests/test_kaitai.py pyharness/tests/test_dp_speed.py -s
+	@$(BIN)/python -m pyharness.tests.fuzz_dp --seconds $(FUZZ_S)
 
 .PHONY: ace-guarantee
 ace-guarantee: $(SETUP) ## settle a million random poses, and search for ground that breaks ACE's bounds

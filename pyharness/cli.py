@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command line: `enav COMMAND`. Heavy modules are imported inside the commands.
 
-Exit codes: 0 done or goal reached, 2 bad input, 3 the drive ended in a fault, 130 interrupted.
+Exit codes: 0 done or goal reached, 2 bad input, 3 the drive ended in a fault, 4 a re-run differs,
+130 interrupted.
 """
 
 import sys
@@ -12,7 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pyharness.cli_compare import compare
 from pyharness.cli_modes import modes_command
+from pyharness.cli_records import evaluate_arc_command, replay_command
 from pyharness.cli_sim import stereo_noise
 from pyharness.cli_terrain import terrain
 from pyharness.cli_types import Assignment, Numbers, as_options
@@ -59,9 +62,12 @@ def _fail(message: str) -> int:
     return EXIT_BAD_INPUT
 
 
+cli.add_command(compare)
 cli.add_command(terrain)
 cli.add_command(modes_command)
 terrain.add_command(stereo_noise)
+cli.add_command(replay_command)
+cli.add_command(evaluate_arc_command)
 
 
 # ------------------------------------------------------------------ enav drive
@@ -72,7 +78,7 @@ terrain.add_command(stereo_noise)
 @click.option("--start", type=Numbers("N,E,YAW_DEG"), help="Where the rover starts (-40,0,0).")
 @click.option("--goal", type=Numbers("N,E"), help="Where it goes (40,0).")
 @click.option("--mode", type=click.Choice(MODES), help="How it goes there (avoid_all).")
-@click.option("--planner", help="enav, file.py:Class, or an installed planner.")
+@click.option("--planner", help="enav, gestalt, rrtsharp, file.py:Class, or an installed one.")
 @click.option("--scenario", "scenario_file", type=click.Path(path_type=Path), help="YAML file.")
 @click.option("--set", "settings", type=Assignment(), multiple=True, help="Scenario key = value.")
 @click.option("--seed", type=int, help="Of terrain and noise.")

@@ -24,6 +24,8 @@ Message = npt.NDArray[np.void]
 
 ByteOrder = Literal["little", "big"]
 
+RECORD_SIZE_MAX_BYTES = 1 << 24
+
 _NUMBERS = {
     "double": "f8",
     "float": "f4",
@@ -69,20 +71,39 @@ class KindDefinition:
     doc: str
 
 
+@dataclass(frozen=True, slots=True)
+class EventDefinition:
+    """One kind of event report."""
+
+    id: int
+    name: str
+    text: str
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Schema:
-    """The layout of every kind of data product, for one byte order."""
+    """The layout of every kind of data product, for one byte order, and what its numbers stand for.
+
+    Attributes:
+        byte_order: Of all numbers.
+        records: The C structs by their type.
+        kinds: The kinds of data products by their number.
+        parameters: Names of Navlib's parameters, in the order of INIT_IN.
+        enums: Names of the values 0, 1, ... of the enumerations, by their C type.
+        events: The event reports by their number.
+    """
 
     byte_order: ByteOrder
     records: Mapping[str, RecordDefinition]
     kinds: Mapping[int, KindDefinition]
+    parameters: tuple[str, ...] = ()
+    enums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    events: Mapping[int, EventDefinition] = field(default_factory=dict)
     _dtypes: dict[str, np.dtype[Any]] = field(default_factory=dict)
 
     def dtype(self, type_name: str) -> np.dtype[Any]:
         """Return the dtype of a record type."""
-        if type_name not in self._dtypes:
-            self._dtypes[type_name] = self._make_dtype(type_name, ())
-        return self._dtypes[type_name]
+        return self._dtype(type_name, ())
 
     def kind_dtype(self, kind: int) -> np.dtype[Any]:
         """Return the dtype of a kind."""
@@ -102,6 +123,11 @@ class Schema:
             )
         return np.frombuffer(payload.ljust(dtype.itemsize, b"\0"), dtype=dtype).reshape(())
 
+    def _dtype(self, type_name: str, parents: tuple[str, ...]) -> np.dtype[Any]:
+        if type_name not in self._dtypes:
+            self._dtypes[type_name] = self._make_dtype(type_name, parents)
+        return self._dtypes[type_name]
+
     def _make_dtype(self, type_name: str, parents: tuple[str, ...]) -> np.dtype[Any]:
         if type_name in _NUMBERS:
             order = "<" if self.byte_order == "little" else ">"
@@ -109,7 +135,12 @@ class Schema:
         if type_name not in self.records or type_name in parents:
             raise ValueError(f"unknown type {type_name!r} in the schema")
         definition = self.records[type_name]
-        inner = [self._make_dtype(item.type, (*parents, type_name)) for item in definition.fields]
+        if definition.size_bytes > RECORD_SIZE_MAX_BYTES:
+            raise ValueError(
+                f"{type_name} of {definition.size_bytes} bytes, expected at most"
+                f" {RECORD_SIZE_MAX_BYTES}"
+            )
+        inner = [self._dtype(item.type, (*parents, type_name)) for item in definition.fields]
         return np.dtype(
             {
                 "names": [item.name for item in definition.fields],
@@ -121,6 +152,38 @@ class Schema:
                 "itemsize": definition.size_bytes,
             }
         )
+
+
+def layout_difference(schema: Schema) -> str | None:
+    """Say what of Navlib's inputs and outputs is laid out otherwise than on this machine, or None.
+
+    The byte order does not matter, nor do records that Navlib does not know.
+    """
+    for kind in range(1, int(lib.NAV_DP_COUNT) + 1):
+        if not is_native_layout(schema, kind):
+            return f"{native_schema().kinds[kind].name} has another layout"
+    if schema.parameters != native_schema().parameters:
+        return "Navlib had other parameters"
+    return None
+
+
+def is_native_layout(schema: Schema, kind: int) -> bool:
+    """Whether a kind is laid out as on this machine, the byte order aside."""
+    native = native_schema()
+    if kind not in schema.kinds or kind not in native.kinds:
+        return False
+    if schema.kinds[kind].name != native.kinds[kind].name:
+        return False
+    return schema.kind_dtype(kind).newbyteorder("=") == native.kind_dtype(kind).newbyteorder("=")
+
+
+def to_native(schema: Schema, kind: int, payload: bytes) -> bytes:
+    """Return a payload in the byte order of this machine, for a schema of the same layout."""
+    native = native_schema()
+    if schema.byte_order == native.byte_order:
+        return payload
+    message = schema.decode(kind, payload)
+    return message.astype(native.kind_dtype(kind)).tobytes()[: len(payload)]
 
 
 def _text(pointer: Any) -> str:
@@ -154,7 +217,28 @@ def native_schema() -> Schema:
         byte_order="little" if sys.byteorder == "little" else "big",
         records={item.type: item for item in records},
         kinds={item.kind: item for item in kinds},
+        parameters=tuple(_text(row.name) for row in lib.nav_param_defs),
+        enums={type_name: _enum_names(type_name, prefix) for type_name, prefix in _ENUMS.items()},
+        events={
+            int(row.id): EventDefinition(int(row.id), _text(row.name), _text(row.text))
+            for row in lib.nav_evr_defs
+        },
     )
+
+
+_ENUMS = {
+    "nav_status_t": "NAV_",
+    "nav_reason_t": "NAV_REASON_",
+    "nav_mode_t": "NAV_MODE_",
+    "nav_host_activity_t": "NAV_HOST_",
+}
+"""The enumerations that have a table in the headers, and the prefix of their names."""
+
+
+def _enum_names(type_name: str, prefix: str) -> tuple[str, ...]:
+    values = ffi.typeof(type_name).elements
+    names = [values[value].removeprefix(prefix) for value in sorted(values)]
+    return tuple(names[:-1])  # without the sentinel that counts them
 
 
 def _kinds() -> Any:
@@ -168,6 +252,14 @@ Kind = _kinds()
 def new_message(kind: int) -> Message:
     """Return an empty record of a kind, all zero."""
     return np.zeros((), dtype=dtype_of(native_schema().kinds[kind].type))
+
+
+def init_request(params: Mapping[str, float], time_s: float = 0.0) -> Message:
+    """Return a full set of parameters as a record."""
+    request = new_message(Kind.INIT_IN)
+    request["time_s"] = time_s
+    request["params"] = [params[name] for name in native_schema().parameters]
+    return request
 
 
 def used_bytes(kind: int, message: Message) -> bytes:

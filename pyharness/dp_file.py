@@ -18,7 +18,9 @@ from typing import Any, BinaryIO, Literal, Self
 from pyharness.clib import lib
 from pyharness.dp import (
     ByteOrder,
+    EventDefinition,
     FieldDefinition,
+    Kind,
     KindDefinition,
     RecordDefinition,
     Schema,
@@ -34,6 +36,10 @@ SYNC = 0x52444E45
 ALIGNMENT_BYTES = 8
 SCHEMA_SIZE_MAX_BYTES = 1 << 20
 END_SIZE_MAX_BYTES = 1 << 16
+SEARCH_BLOCK_BYTES = 1 << 20
+
+FLUSHED_KINDS = frozenset({Kind.SELECT_ARC_OUT, Kind.HOST_EVR})
+"""What ends a planning cycle, and what tells of a fault."""
 
 _FILE_HEADER = "8s4I"  # magic, byte-order mark, format version, content version, schema size
 _RECORD_HEADER = "4Id"  # sync, kind, payload size, sequence, time
@@ -54,7 +60,10 @@ def description(schema: Schema, info: DriveInfo) -> dict[str, Any]:
     """Return, as plain data, what the records of a drive look like and what drive it is."""
     return {
         "drive": asdict(info),
+        "enums": schema.enums,
+        "events": [asdict(item) for item in schema.events.values()],
         "kinds": [asdict(item) for item in schema.kinds.values()],
+        "parameters": schema.parameters,
         "records": [asdict(item) for item in schema.records.values()],
     }
 
@@ -75,7 +84,12 @@ def _read_schema(data: Mapping[str, Any], byte_order: ByteOrder) -> Schema:
     ]
     kinds = [KindDefinition(**row) for row in data["kinds"]]
     schema = Schema(
-        byte_order, {item.type: item for item in records}, {item.kind: item for item in kinds}
+        byte_order,
+        records={item.type: item for item in records},
+        kinds={item.kind: item for item in kinds},
+        parameters=tuple(data["parameters"]),
+        enums={name: tuple(values) for name, values in data["enums"].items()},
+        events={row["id"]: EventDefinition(**row) for row in data["events"]},
     )
     for item in kinds:
         schema.kind_dtype(item.kind)
@@ -91,7 +105,11 @@ def _read_info(data: Mapping[str, Any]) -> DriveInfo:
 
 
 class DpWriter:
-    """Writes a data product file of this machine's layout and byte order."""
+    """Writes a data product file of this machine's layout and byte order.
+
+    Whole planning cycles are handed to the operating system at once: a killed program loses the
+    current one at most. The disk has them all when the file is closed.
+    """
 
     def __init__(self, path: Path, info: DriveInfo) -> None:
         """Create the file, which must not exist, and write its header."""
@@ -109,7 +127,7 @@ class DpWriter:
         self._file.write(head + text + check)
 
     def write(self, record: Record) -> None:
-        """Append one record."""
+        """Append one record; planning cycles and faults are handed on at once."""
         head = struct.pack(
             "=" + _RECORD_HEADER,
             SYNC,
@@ -120,10 +138,8 @@ class DpWriter:
         )
         checks = struct.pack("=" + _CHECKS, zlib.crc32(head), zlib.crc32(record.payload))
         self._file.write(head + checks + record.payload + bytes(_padding(len(record.payload))))
-
-    def flush(self) -> None:
-        """Hand everything written so far to the operating system."""
-        self._file.flush()
+        if record.kind in FLUSHED_KINDS:
+            self._file.flush()
 
     def close(self) -> None:
         """Bring the file to the disk and close it."""
@@ -165,8 +181,8 @@ class _DamageError(Exception):
 class DpReader:
     """Reads a data product file of either byte order, with the layout the file itself states.
 
-    `records()` yields what is intact; afterwards `damage` tells where and why it ended early, or is
-    None for a complete file.
+    `records()` yields what is intact, also behind damage: a gap in the sequence numbers shows where
+    something is missing. Afterwards `damage` tells where and why the file is not whole, or is None.
     """
 
     def __init__(self, path: Path) -> None:
@@ -176,7 +192,8 @@ class DpReader:
             DpFileError: There is no such file, or its header is unusable.
         """
         self.path = path
-        self.damage: Damage | None = None
+        self._damages: list[Damage] = []
+        self._lost_count = 0
         self._file = _open_regular(path)
         try:
             self.version, self.schema, self.info = self._read_header()
@@ -185,25 +202,71 @@ class DpReader:
             raise DpFileError(f"{path}: damaged at byte 0: {error}") from None
         self._start = self._file.tell()
 
+    @property
+    def damage(self) -> Damage | None:
+        """The first damage met so far, and how much is missing before the last intact record."""
+        if not self._damages:
+            return None
+        first = self._damages[0]
+        if self._lost_count == 0:
+            return first
+        places = len(self._damages)
+        lost = f"{self._lost_count} record{'s' if self._lost_count > 1 else ''} lost"
+        where = f" in {places} places" if places > 1 else ""
+        return Damage(first.offset, f"{first.reason}; {lost}{where}")
+
     def records(self) -> Iterator[Record]:
         """Yield the intact records from the first on."""
-        self.damage = None
-        self._file.seek(self._start)
+        self._damages, self._lost_count = [], 0
+        offset: int | None = self._start
         sequence = 0
-        while True:
-            offset = self._file.tell()
+        is_gap_known = False
+        while offset is not None:
+            self._file.seek(offset)
             try:
                 record = self._read_record(sequence)
             except _DamageError as error:
-                self.damage = Damage(offset, str(error))
-                return
+                self._damages.append(Damage(offset, str(error)))
+                is_gap_known = True
+                offset = self._find_record(offset + 1, sequence)
+                continue
+            if record.sequence > sequence and not is_gap_known:
+                reason = f"record number {record.sequence}, expected {sequence}"
+                self._damages.append(Damage(offset, reason))
+            self._lost_count += record.sequence - sequence
+            sequence, is_gap_known = record.sequence + 1, False
+            offset = self._file.tell()
             if record.kind == KIND_END:
                 if self._file.read(1):
-                    self.damage = Damage(self._file.tell() - 1, "bytes after the end record")
-                yield record
-                return
+                    self._damages.append(Damage(offset, "bytes after the end record"))
+                offset = None
             yield record
-            sequence += 1
+
+    def _find_record(self, offset: int, sequence: int) -> int | None:
+        """Return where the next intact record begins, which may be anywhere, or None."""
+        mark = struct.pack(self._prefix + "I", SYNC)
+        header_bytes = _RECORD_HEADER_BYTES + _CHECKS_BYTES
+        while True:
+            self._file.seek(offset)
+            block = self._take_up_to(SEARCH_BLOCK_BYTES)
+            place = block.find(mark)
+            while 0 <= place <= len(block) - header_bytes:
+                head = block[place : place + _RECORD_HEADER_BYTES]
+                check = struct.unpack_from(self._prefix + "I", block, place + len(head))[0]
+                if check == zlib.crc32(head) and self._is_record(offset + place, sequence):
+                    return offset + place
+                place = block.find(mark, place + 1)
+            if len(block) < SEARCH_BLOCK_BYTES:
+                return None
+            offset += len(block) - header_bytes + 1
+
+    def _is_record(self, offset: int, sequence: int) -> bool:
+        self._file.seek(offset)
+        try:
+            self._read_record(sequence)
+        except _DamageError:
+            return False
+        return True
 
     def close(self) -> None:
         """Close the file."""
@@ -222,9 +285,10 @@ class DpReader:
         return False
 
     def _read_header(self) -> tuple[int, Schema, DriveInfo]:
-        head = self._take(_FILE_HEADER_BYTES, "the file header")
-        if not head.startswith(MAGIC):
+        beginning = self._take_up_to(len(MAGIC))
+        if beginning != MAGIC[: len(beginning)]:
             raise _DamageError(f"not a data product file, expected it to begin with {MAGIC!r}")
+        head = beginning + self._take(_FILE_HEADER_BYTES - len(beginning), "the file header")
         mark = struct.unpack_from("<I", head, len(MAGIC))[0]
         orders: dict[int, ByteOrder] = {
             BYTE_ORDER_MARK: "little",
@@ -241,8 +305,8 @@ class DpReader:
                 f"a schema of {size} bytes, expected at most {SCHEMA_SIZE_MAX_BYTES}"
             )
         text = self._take(size, "the schema")
-        (check, _) = struct.unpack(self._prefix + "2I", self._take(8, "the header's checksum"))
-        if check != zlib.crc32(head + text):
+        checks = self._take(8, "the header's checksum")
+        if struct.unpack(self._prefix + "2I", checks) != (zlib.crc32(head + text), 0):
             raise _DamageError("the header's checksum does not match")
         try:
             data = json.loads(text)
@@ -260,18 +324,19 @@ class DpReader:
             raise _DamageError(f"expected the mark of a record, found {sync:#010x}")
         if header_check != zlib.crc32(head):
             raise _DamageError("the checksum of the record header does not match")
-        if found != sequence:
+        if found < sequence:
             raise _DamageError(f"record number {found}, expected {sequence}")
         if size > self._size_max_bytes(kind):
             raise _DamageError(f"a record of kind {kind} with {size} bytes is too long")
         payload = self._take(size, "a record")
         if payload_check != zlib.crc32(payload):
-            raise _DamageError("the checksum of the record does not match")
+            name = self.schema.kinds[kind].name if kind != KIND_END else "the end"
+            raise _DamageError(f"the checksum of record {found}, {name}, does not match")
         if any(self._take(_padding(size), "the padding of a record")):
             raise _DamageError("the padding of the record is not zero")
         if kind == KIND_END:
             _check_end(payload)
-        return Record(kind, time_s, sequence, payload)
+        return Record(kind, time_s, found, payload)
 
     def _size_max_bytes(self, kind: int) -> int:
         if kind == KIND_END:
@@ -281,15 +346,18 @@ class DpReader:
         return self.schema.kind_dtype(kind).itemsize
 
     def _take(self, size: int, what: str, is_start: bool = False) -> bytes:
-        try:
-            data = self._file.read(size)
-        except OSError as error:
-            raise _DamageError(f"cannot be read: {error.strerror}") from None
+        data = self._take_up_to(size)
         if is_start and not data:
             raise _DamageError("the file ends without its end record")
         if len(data) < size:
             raise _DamageError(f"the file ends within {what}")
         return data
+
+    def _take_up_to(self, size: int) -> bytes:
+        try:
+            return self._file.read(size)
+        except OSError as error:
+            raise _DamageError(f"cannot be read: {error.strerror}") from None
 
 
 def _check_end(payload: bytes) -> None:

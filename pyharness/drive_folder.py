@@ -25,8 +25,6 @@ from sim.config import dump_model
 from sim.terrain import Terrain
 
 PRODUCT_FILES = ("drive.dp", "summary.json")
-# after these the records so far are handed to the system: every cycle, every fault
-FLUSHED_KINDS = frozenset({Kind.SELECT_ARC_OUT, Kind.HOST_EVR})
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +105,6 @@ def _run_into(
     with DpWriter(folder / "drive.dp", info) as writer:
         subscribers: list[Callable[[Record], None]] = [
             writer.write,
-            lambda record: writer.flush() if record.kind in FLUSHED_KINDS else None,
             history.take,
         ]
         if progress is not None:
@@ -116,11 +113,8 @@ def _run_into(
     duration_wall_s = time.perf_counter() - start_s
 
     summary = with_wall_time(metrics.summarize(history), duration_wall_s)
-    (folder / "metrics.csv").write_text(metrics.cycles_csv(history), "utf-8")
-    (folder / "truth.csv").write_text(metrics.truth_csv(history), "utf-8")
-    (folder / "evr.log").write_text(metrics.evr_log(history), "utf-8")
     draw_overhead(history, terrain, folder / "overhead.png")
-    (folder / "summary.json").write_text(metrics.summary_text(summary), "utf-8")
+    metrics.write(history, summary, folder)
     return summary
 
 

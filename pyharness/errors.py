@@ -16,3 +16,7 @@ class PlannerLoadError(HarnessError):
 
 class OutputError(HarnessError):
     """A result cannot be written where it was asked for."""
+
+
+class RerunError(HarnessError):
+    """Recorded inputs cannot be run again."""

@@ -44,14 +44,22 @@ class History:
     params: dict[str, float] = field(default_factory=lambda: param_values({}))
     outcome: Outcome = UNFINISHED
     _request: Message | None = None
+    _next_sequence: int = 0
     _truths: list[bytes] = field(default_factory=list)
 
     def take(self, record: Record) -> None:
-        """Take in the next record; kinds that are not needed are passed over."""
+        """Take in the next record; kinds that are not needed are passed over.
+
+        An answer whose request is lost is passed over too.
+        """
+        if record.sequence != self._next_sequence:
+            self._request = None
+        self._next_sequence = record.sequence + 1
         if record.kind == KIND_END:
             self.outcome = read_end(record.payload)
         elif record.kind == Kind.TRUTH:
-            self._truths.append(record.payload)
+            size_bytes = self.schema.kind_dtype(record.kind).itemsize
+            self._truths.append(record.payload.ljust(size_bytes, b"\0"))
         elif record.kind in _WANTED:
             self._sort(record.kind, self.schema.decode(record.kind, record.payload))
 
@@ -85,7 +93,8 @@ class History:
         elif kind == Kind.SET_KIOZ_IN:
             self.zones = message
         elif kind == Kind.INIT_IN:
-            self.params = dict(zip(self.params, message["params"].tolist(), strict=True))
+            names = self.schema.parameters
+            self.params |= dict(zip(names, message["params"].tolist(), strict=False))
 
     def _distance_m(self) -> float:
         if not self._truths:

@@ -7,6 +7,7 @@ import json
 import math
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -74,9 +75,21 @@ def rejection_counts(history: History) -> dict[str, int]:
     """Return how many candidate paths were rejected, by reason, over all planning cycles."""
     answers = [answer["rejections"] for _, answer in history.selections]
     return {
-        reason.name.lower(): sum(int(counts[reason.value]) for counts in answers)
-        for reason in REASONS
+        reason.name.lower(): sum(_count(counts, reason) for counts in answers) for reason in REASONS
     }
+
+
+def _count(counts: npt.NDArray[Any], reason: Any) -> int:
+    """Return how often a reason occurred; a file may be older than the reason."""
+    return int(counts[reason.value]) if reason.value < len(counts) else 0
+
+
+def write(history: History, summary: dict[str, Any], folder: Path) -> None:
+    """Write the tables of a drive, and its summary last."""
+    (folder / "metrics.csv").write_text(cycles_csv(history), "utf-8")
+    (folder / "truth.csv").write_text(truth_csv(history), "utf-8")
+    (folder / "evr.log").write_text(evr_log(history), "utf-8")
+    (folder / "summary.json").write_text(summary_text(summary), "utf-8")
 
 
 def summary_text(summary: dict[str, Any]) -> str:
@@ -156,7 +169,7 @@ def _cycle_row(request: Message, answer: Message) -> dict[str, Any]:
         "paths_tested": int(answer["paths_tested"]),
     }
     for reason in REASONS:
-        row[f"rejected_{reason.name.lower()}"] = int(answer["rejections"][reason.value])
+        row[f"rejected_{reason.name.lower()}"] = _count(answer["rejections"], reason)
     found = {
         "arc_length_m": float(answer["arc"]["length_m"]),
         "arc_heading_change_rad": float(answer["arc"]["heading_change_rad"]),

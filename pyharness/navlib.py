@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from pyharness.clib import ffi, lib
-from pyharness.dp import Kind, Message, new_message
+from pyharness.dp import Kind, Message, init_request, new_message
 from pyharness.layout import dtype_of
-from pyharness.params import param_table
 from pyharness.status import Status, status_text
 
 
@@ -32,10 +31,8 @@ class Navlib:
             NavlibError: The parameters are refused.
         """
         self._ctx = ffi.new("nav_ctx_t *")
-        request = new_message(Kind.INIT_IN)
-        request["time_s"] = time_s
-        request["params"] = [params[name] for name in param_table()]
         lib.nav_stub_clear()
+        request = init_request(params, time_s)
         answer = self._call(lib.nav_init, "init", Kind.INIT_OUT, request)
         if answer["status"] != Status.OK:
             raise NavlibError(f"nav_init: {status_text(int(answer['status']))}")

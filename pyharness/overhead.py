@@ -27,6 +27,7 @@ from sim.terrain import Terrain
 # heights at which a rock is a hazard to the belly pan, to a wheel, to the rocker (SIM Fig. 10)
 ROCK_CLASSES = ((0.25, 0.35, "#f2c14e"), (0.35, 0.46, "#e4572e"), (0.46, math.inf, "#8b1e3f"))
 TRACK_COLOR, ARC_COLOR, GOAL_COLOR = "#00c2ff", "#ffffff", "#39ff14"
+WHEEL_COLOR = "#8c8c8c"
 MAP_COLOR, START_COLOR, KEEP_OUT_COLOR, KEEP_IN_COLOR = "#ffd400", "#ff00c8", "#ff3b30", "#34c759"
 MARGIN_M = 8.0
 CELLS_MAX = 1500
@@ -205,7 +206,15 @@ def _arc_line(request: Message, answer: Message) -> npt.NDArray[np.float64]:
     return np.array([(item.y_m, item.x_m) for item in poses])
 
 
+def wheel_tracks_m(history: History) -> npt.NDArray[np.float64]:
+    """Where the wheels touched the ground, [6, steps, 2] of east and north; NaN off the map."""
+    contacts = history.truth["contacts"]
+    return np.stack([contacts["y_m"].T, contacts["x_m"].T], axis=-1)
+
+
 def _draw_track(axes: Axes, history: History) -> None:
+    wheels = LineCollection(list(wheel_tracks_m(history)), colors=WHEEL_COLOR, linewidths=0.5)
+    axes.add_collection(wheels, autolim=False)
     pose = history.truth["pose"]
     axes.plot(pose["y_site_m"], pose["x_site_m"], "-", color=TRACK_COLOR, linewidth=1.0, zorder=4)
 
@@ -299,6 +308,7 @@ def draw_scale(axes: Axes, window: Window) -> None:
 def _line_handles(history: History) -> list[Any]:
     handles: list[Any] = [
         Line2D([], [], color=TRACK_COLOR, marker="s", markersize=5, label="true track, end"),
+        Line2D([], [], color=WHEEL_COLOR, label="wheel tracks"),
         Line2D([], [], color=ARC_COLOR, marker=".", label="selected arcs, as believed"),
         Line2D([], [], color=START_COLOR, marker="o", linestyle="", label="start, heading"),
         Line2D([], [], color=GOAL_COLOR, marker="+", label="goal waydisc"),

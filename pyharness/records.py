@@ -39,8 +39,11 @@ class RecordStream:
 
     def publish(self, kind: int, time_s: float, payload: bytes) -> None:
         """Send the next record."""
-        record = Record(kind, time_s, self.count, payload)
-        self.count += 1
+        self.forward(Record(kind, time_s, self.count, payload))
+
+    def forward(self, record: Record) -> None:
+        """Send a record that has its number already."""
+        self.count = record.sequence + 1
         for subscriber in self.subscribers:
             subscriber(record)
 

@@ -12,10 +12,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, Patch
 
-from pyharness.dp_file import DpReader
 from pyharness.evr import evr_table
 from pyharness.faults import FAULT_PREFIX
 from pyharness.history import History
+from pyharness.replay import read_history
 from pyharness.status import Activity
 
 WINDOW_S = 150.0  # five or six planning cycles: short enough to read
@@ -51,10 +51,7 @@ Bars = dict[int, list[Bar]]
 
 def draw_timeline_of(drive: Path, path: Path) -> None:
     """Write the timeline of a recorded drive as PNG."""
-    with DpReader(drive) as reader:
-        history = History(reader.schema, reader.info)
-        for record in reader.records():
-            history.take(record)
+    history, _ = read_history(drive)
     draw_timeline(history, path)
 
 

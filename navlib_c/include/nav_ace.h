@@ -13,7 +13,7 @@
 #define NAV_ACE_H
 
 #include "nav_arc.h"
-#include "nav_costmap.h"
+#include "nav_relief.h"
 #include "nav_vehicle.h"
 
 #define NAV_ACE_BOUNDS_FIELDS(S, A, N, M)                                                          \
@@ -44,7 +44,8 @@ typedef struct
     const nav_params_t *params;
     const nav_vehicle_t *vehicle;
     const nav_surface_t *surface;
-    const nav_costmap_t *costmap; /* for the local plane only */
+    const nav_costmap_t *costmap; /* for the planes only */
+    const nav_relief_t *relief;
 } nav_ace_scene_t;
 
 /**

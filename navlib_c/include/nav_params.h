@@ -62,9 +62,6 @@
     X(uncertainty_yaw_growth_rad_per_m, 0.0087266463, 0.0, 1.0, "rad/m",                           \
       "growth of yaw uncertainty along a path [C]: 0.5 deg/m")                                     \
     X(uncertainty_yaw_max_rad, 0.0349065850, 0.0, 1.0, "rad", "bound of that growth [C]: 2 deg")   \
-    X(ace_margin, 0.05, 0.0, 1.0, "1",                                                             \
-      "share of the height span in a wheel's box added to both ends of the wheel's height "        \
-      "interval [C]: terrain between the samples")                                                 \
     X(clearance_min_m, 0.35, 0.0, 1.0, "m",                                                        \
       "least belly clearance [S]: nominal 0.60 less the 25 cm rock that SIM calls a hazard")       \
     X(tilt_max_rad, 0.5235987756, 0.05, 1.2, "rad",                                                \

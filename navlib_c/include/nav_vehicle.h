@@ -35,7 +35,19 @@ typedef struct
     double rocker_pivot_height_m;
     double bogie_pivot_x_m;
     double bogie_pivot_height_m;
+    double flat_inverse[NAV_LINKAGE_STATES]
+                       [NAV_WHEELS]; /* derivatives of the state on flat ground */
 } nav_vehicle_t;
+
+/** A state found for six wheel heights, and how the state changes with them. */
+typedef struct
+{
+    double state[NAV_LINKAGE_STATES];
+    double inverse[NAV_LINKAGE_STATES]
+                  [NAV_WHEELS]; /* derivatives of the state, near the solution */
+    double moved_max_m;    /* largest change of a wheel height from where the inverse was taken */
+    double residual_max_m; /* largest wheel height left over */
+} nav_linkage_t;
 
 /** Takes the geometry from checked parameters. */
 void nav_vehicle_init(const nav_params_t *params, nav_vehicle_t *vehicle);
@@ -59,13 +71,14 @@ void nav_vehicle_wheel_places(const nav_vehicle_t *vehicle,
                               double right_m[NAV_WHEELS]);
 
 /**
- * The state whose wheel heights are the given ones (Newton, at most 8 steps, residual below 1e-9 m).
- * @param inverse  derivatives at the solution: inverse[state][wheel]
- * @return false when it does not converge (heights no linkage could take)
+ * The state whose wheel heights are the given ones: at most 10 Newton steps from linkage->state, which
+ * holds a guess. The derivatives are taken where it starts, and anew only when that is far away.
+ * @param tolerance_m  largest wheel height that may be left over
+ * @return false when that is not reached (heights no linkage could take); linkage then holds no solution
  */
 bool nav_vehicle_settle(const nav_vehicle_t *vehicle,
                         const double height_m[NAV_WHEELS],
-                        double state[NAV_LINKAGE_STATES],
-                        double inverse[NAV_LINKAGE_STATES][NAV_WHEELS]);
+                        double tolerance_m,
+                        nav_linkage_t *linkage);
 
 #endif

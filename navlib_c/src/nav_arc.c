@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "nav_math.h"
+#include "nav_minmax.h"
 
 /* An arc shorter than this is a turn in place. */
 #define NAV_ARC_LENGTH_MIN_M 1.0e-6

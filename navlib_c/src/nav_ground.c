@@ -8,15 +8,18 @@
 #include <math.h>
 
 #include "nav_math.h"
+#include "nav_minmax.h"
 
-#define COLUMN_REACH_M 10.0
 #define EDGE_CELLS 1.0e-9
+#define SIDE ((int32_t) NAV_CELLS_PER_COST_CELL)
+#define MIDDLE (0.5 * ((double) NAV_CELLS_PER_COST_CELL - 1.0))
 
 /** Frame from the plane's slope and the heading. */
 static void place_plane(nav_ground_t *ground, const nav_cost_cell_t *cell, double yaw_rad)
 {
-    const double c = nav_cos(yaw_rad);
-    const double s = nav_sin(yaw_rad);
+    double s = 0.0;
+    double c = 1.0;
+    nav_sincos(yaw_rad, &s, &c);
     ground->dz_dx = (double) cell->plane_dz_dx;
     ground->dz_dy = (double) cell->plane_dz_dy;
 
@@ -24,7 +27,8 @@ static void place_plane(nav_ground_t *ground, const nav_cost_cell_t *cell, doubl
     const double a = -((ground->dz_dx * c) + (ground->dz_dy * s));
     const double b = (ground->dz_dx * s) - (ground->dz_dy * c);
     const double forward_norm = 1.0 / sqrt(1.0 + (a * a));
-    const double cos_slope = 1.0 / sqrt(1.0 + (a * a) + (b * b));
+    const double slant = sqrt(1.0 + (a * a) + (b * b));
+    const double cos_slope = 1.0 / slant;
     const double right_norm = forward_norm * cos_slope;
     const double right_forward = -(a * b) * right_norm;
     const double right_right = (1.0 + (a * a)) * right_norm;
@@ -39,15 +43,43 @@ static void place_plane(nav_ground_t *ground, const nav_cost_cell_t *cell, doubl
     ground->cos_slope = cos_slope;
 
     /* the determinant of the map from (u, v) to (x, y) is cos_slope, never near 0 */
-    ground->u_of_xy[0] = ground->right_xy[1] / cos_slope;
-    ground->u_of_xy[1] = -ground->right_xy[0] / cos_slope;
-    ground->v_of_xy[0] = -ground->forward_xy[1] / cos_slope;
-    ground->v_of_xy[1] = ground->forward_xy[0] / cos_slope;
+    ground->u_of_xy[0] = ground->right_xy[1] * slant;
+    ground->u_of_xy[1] = -ground->right_xy[0] * slant;
+    ground->v_of_xy[0] = -ground->forward_xy[1] * slant;
+    ground->v_of_xy[1] = ground->forward_xy[0] * slant;
+}
+
+/** Lines along the axis that the heading crosses more steeply. */
+static void place_lanes(nav_ground_t *ground)
+{
+    nav_lanes_t *lanes = &ground->lanes;
+    const bool is_row = fabs(ground->forward_xy[0]) >= fabs(ground->forward_xy[1]);
+    const uint32_t major = is_row ? 0U : 1U;
+    const uint32_t minor = is_row ? 1U : 0U;
+    const double cell_m = ground->surface->cell_m;
+
+    lanes->step_major = is_row ? NAV_HEIGHTMAP_SIZE : 1;
+    lanes->step_minor = is_row ? 1 : NAV_HEIGHTMAP_SIZE;
+    lanes->major = is_row ? ground->row : ground->col;
+    lanes->minor = is_row ? ground->col : ground->row;
+    lanes->major_per_u = ground->forward_xy[major] * ground->cells_per_m;
+    lanes->major_per_v = ground->right_xy[major] * ground->cells_per_m;
+    lanes->minor_per_u = ground->forward_xy[minor] * ground->cells_per_m;
+    lanes->minor_per_v = ground->right_xy[minor] * ground->cells_per_m;
+    lanes->u_per_major = 1.0 / lanes->major_per_u;
+    lanes->minor_per_major = lanes->minor_per_u * lanes->u_per_major;
+    lanes->minor_across = lanes->minor_per_v - (lanes->major_per_v * lanes->minor_per_major);
+    lanes->u_per_minor = -(lanes->major_per_v * lanes->u_per_major) / lanes->minor_across;
+    lanes->plane_major_m = (is_row ? ground->dz_dx : ground->dz_dy) * cell_m;
+    lanes->plane_minor_m = (is_row ? ground->dz_dy : ground->dz_dx) * cell_m;
+    lanes->plane_first_m = ground->z_site_m - (lanes->major * lanes->plane_major_m) -
+                           (lanes->minor * lanes->plane_minor_m);
 }
 
 bool nav_ground_place(nav_ground_t *ground,
                       const nav_surface_t *surface,
                       const nav_costmap_t *costmap,
+                      const nav_relief_t *relief,
                       const nav_pose2_t *pose)
 {
     uint32_t index = 0U;
@@ -64,17 +96,39 @@ bool nav_ground_place(nav_ground_t *ground,
         ground->z_site_m = (double) cell->plane_z_site_m + (ground->dz_dx * (pose->x_m - x_m)) +
                            (ground->dz_dy * (pose->y_m - y_m));
         ground->surface = surface;
+        ground->costmap = costmap;
+        ground->relief = relief;
         ground->cells_per_m = 1.0 / surface->cell_m;
         ground->row = (pose->x_m * ground->cells_per_m) - (double) surface->origin_row - 0.5;
         ground->col = (pose->y_m * ground->cells_per_m) - (double) surface->origin_col - 0.5;
+        ground->cost_row = surface->origin_row - (costmap->origin_row * SIDE);
+        ground->cost_col = surface->origin_col - (costmap->origin_col * SIDE);
+        place_lanes(ground);
     }
     return is_placed;
 }
 
-/** Whole numbers within [low, high]. */
-static nav_columns_t whole_between(double low, double high)
+double nav_ground_eta_m(const nav_ground_t *ground, double foot_u_m, double foot_v_m)
 {
-    nav_columns_t between = {0, -1};
+    const double north_m = (ground->forward_xy[0] * foot_u_m) + (ground->right_xy[0] * foot_v_m);
+    const double east_m = (ground->forward_xy[1] * foot_u_m) + (ground->right_xy[1] * foot_v_m);
+    const double row = ground->row + (north_m * ground->cells_per_m) + 0.5;
+    const double col = ground->col + (east_m * ground->cells_per_m) + 0.5;
+    const double size = (double) NAV_HEIGHTMAP_SIZE;
+    double eta_m = -NAV_ETA_NONE;
+    if ((row >= 0.0) && (col >= 0.0) && (row < size) && (col < size))
+    {
+        const double plane_z_m =
+            ground->z_site_m + (ground->dz_dx * north_m) + (ground->dz_dy * east_m);
+        const int32_t cell = ((int32_t) row * NAV_HEIGHTMAP_SIZE) + (int32_t) col;
+        eta_m = (plane_z_m - (double) ground->surface->z_site_m[cell]) * ground->cos_slope;
+    }
+    return eta_m;
+}
+
+nav_indices_t nav_ground_between(double low, double high)
+{
+    nav_indices_t between = {0, -1};
     if (high >= low)
     {
         (void) nav_floor_index((low + 1.0) - EDGE_CELLS, &between.first);
@@ -83,149 +137,81 @@ static nav_columns_t whole_between(double low, double high)
     return between;
 }
 
-nav_columns_t nav_ground_rows(const nav_ground_t *ground, const nav_box_t *box)
+/** Costmap rows (or columns) of the surface rows within half of a middle. @return false off the map */
+static bool cost_indices(double middle, double half, int32_t cost_first, nav_indices_t *cells)
 {
-    const double middle_m = (ground->forward_xy[0] * box->u_m) + (ground->right_xy[0] * box->v_m);
-    const double half_m =
-        (fabs(ground->forward_xy[0]) * box->half_u_m) + (fabs(ground->right_xy[0]) * box->half_v_m);
-    return whole_between(ground->row + ((middle_m - half_m) * ground->cells_per_m),
-                         ground->row + ((middle_m + half_m) * ground->cells_per_m));
-}
-
-/** Part of a row between two parallel sides of the box. */
-static void cut_row(double slope, double middle_m, double half_m, double *low_m, double *high_m)
-{
-    if (fabs(slope) > 1.0e-9)
+    const double low = middle - half;
+    const double high = middle + half;
+    bool is_inside = (low >= 0.0) && (high <= (double) (NAV_HEIGHTMAP_SIZE - 1));
+    cells->first = 0;
+    cells->last = -1;
+    if (is_inside)
     {
-        const double at_m = middle_m / slope;
-        const double reach_m = fabs(half_m / slope);
-        *low_m = nav_max(*low_m, at_m - reach_m);
-        *high_m = nav_min(*high_m, at_m + reach_m);
+        const int32_t first = (cost_first + (int32_t) (low + (1.0 - EDGE_CELLS))) / SIDE;
+        const int32_t last = (cost_first + (int32_t) (high + EDGE_CELLS)) / SIDE;
+        /* wholly on the surface, and on the costmap */
+        is_inside = (cost_first >= 0) && ((first * SIDE) >= cost_first) &&
+                    ((((last + 1) * SIDE) - cost_first) <= NAV_HEIGHTMAP_SIZE) &&
+                    (last < NAV_COSTMAP_SIZE);
+        cells->first = first;
+        cells->last = last;
     }
-    else if (fabs(middle_m) > half_m)
-    {
-        *high_m = *low_m - 1.0;
-    }
-    else
-    {
-        /* the whole row lies between these two sides */
-    }
+    return is_inside;
 }
 
-nav_columns_t nav_ground_columns(const nav_ground_t *ground,
-                                 const nav_box_t *box,
-                                 int32_t row,
-                                 uint32_t *outside_count)
+bool nav_ground_cost_box(const nav_ground_t *ground, const nav_box_t *box, nav_cost_box_t *cells)
 {
-    const double dx_m = ((double) row - ground->row) * ground->surface->cell_m;
-    double low_m = -COLUMN_REACH_M;
-    double high_m = COLUMN_REACH_M;
-    cut_row(ground->u_of_xy[1], box->u_m - (ground->u_of_xy[0] * dx_m), box->half_u_m, &low_m,
-            &high_m);
-    cut_row(ground->v_of_xy[1], box->v_m - (ground->v_of_xy[0] * dx_m), box->half_v_m, &low_m,
-            &high_m);
-
-    nav_columns_t columns = whole_between(ground->col + (low_m * ground->cells_per_m),
-                                          ground->col + (high_m * ground->cells_per_m));
-    const int32_t count = (columns.last - columns.first) + 1;
-    const bool is_row_inside = (row >= 0) && (row < NAV_HEIGHTMAP_SIZE);
-    columns.first = (columns.first < 0) ? 0 : columns.first;
-    columns.last = (columns.last < NAV_HEIGHTMAP_SIZE) ? columns.last : (NAV_HEIGHTMAP_SIZE - 1);
-    columns.last = is_row_inside ? columns.last : (columns.first - 1);
-    const int32_t left = (columns.last >= columns.first) ? ((columns.last - columns.first) + 1) : 0;
-    *outside_count += (count > left) ? (uint32_t) (count - left) : 0U;
-    return columns;
+    const double *f = ground->forward_xy;
+    const double *r = ground->right_xy;
+    const double per_m = ground->cells_per_m;
+    const double row = ground->row + (((f[0] * box->u_m) + (r[0] * box->v_m)) * per_m);
+    const double col = ground->col + (((f[1] * box->u_m) + (r[1] * box->v_m)) * per_m);
+    const double half_row = ((fabs(f[0]) * box->half_u_m) + (fabs(r[0]) * box->half_v_m)) * per_m;
+    const double half_col = ((fabs(f[1]) * box->half_u_m) + (fabs(r[1]) * box->half_v_m)) * per_m;
+    const bool is_row_inside = cost_indices(row, half_row, ground->cost_row, &cells->rows);
+    const bool is_col_inside = cost_indices(col, half_col, ground->cost_col, &cells->cols);
+    return is_row_inside && is_col_inside;
 }
 
-bool nav_ground_cell(const nav_ground_t *ground,
-                     int32_t row,
-                     int32_t col,
-                     nav_ground_point_t *point)
+nav_patch_t nav_ground_patch(const nav_ground_t *ground, int32_t cost_row, int32_t cost_col)
 {
-    const float z = ground->surface->z_site_m[(row * NAV_HEIGHTMAP_SIZE) + col];
-    const bool is_known = z < NAV_SURFACE_UNKNOWN_M;
-    if (is_known)
+    const int32_t index = (cost_row * NAV_COSTMAP_SIZE) + cost_col;
+    const nav_cost_cell_t *cell = &ground->costmap->cells[index];
+    const nav_relief_cell_t *relief = &ground->relief->cells[index];
+    const double cell_m = ground->surface->cell_m;
+    const double row = (double) ((cost_row * SIDE) - ground->cost_row) + MIDDLE;
+    const double col = (double) ((cost_col * SIDE) - ground->cost_col) + MIDDLE;
+    nav_patch_t patch;
+    patch.north_m = (row - ground->row) * cell_m;
+    patch.east_m = (col - ground->col) * cell_m;
+    /* from its own plane to the one under the pose: at the middle, and how they diverge from there */
+    const double between_m =
+        (ground->z_site_m + (ground->dz_dx * patch.north_m) + (ground->dz_dy * patch.east_m)) -
+        (double) cell->plane_z_site_m;
+    const double apart_m = MIDDLE * cell_m *
+                           (fabs(ground->dz_dx - (double) cell->plane_dz_dx) +
+                            fabs(ground->dz_dy - (double) cell->plane_dz_dy));
+    patch.above.low_m = (between_m + (double) relief->below_m) - apart_m;
+    patch.above.high_m = between_m + (double) relief->above_m + apart_m;
+    patch.is_whole = relief->is_whole != 0U;
+    return patch;
+}
+
+bool nav_ground_range(const nav_ground_t *ground, const nav_box_t *box, nav_interval_t *above)
+{
+    nav_cost_box_t cells;
+    bool is_whole = nav_ground_cost_box(ground, box, &cells);
+    above->low_m = NAV_ETA_NONE;
+    above->high_m = -NAV_ETA_NONE;
+    for (int32_t row = cells.rows.first; (row <= cells.rows.last) && is_whole; row++)
     {
-        const double dx_m = ((double) row - ground->row) * ground->surface->cell_m;
-        const double dy_m = ((double) col - ground->col) * ground->surface->cell_m;
-        const double above_m =
-            (ground->z_site_m + (ground->dz_dx * dx_m) + (ground->dz_dy * dy_m)) - (double) z;
-        point->u_m = (ground->u_of_xy[0] * dx_m) + (ground->u_of_xy[1] * dy_m) +
-                     (above_m * ground->forward_up);
-        point->v_m = (ground->v_of_xy[0] * dx_m) + (ground->v_of_xy[1] * dy_m) +
-                     (above_m * ground->right_up);
-        point->eta_m = above_m * ground->cos_slope;
-    }
-    return is_known;
-}
-
-/** Bilinear z between four cells. @return false when one is unknown */
-static bool surface_z_m(const nav_surface_t *surface, double row, double col, double *z_m)
-{
-    const int32_t row_0 = (int32_t) row;
-    const int32_t col_0 = (int32_t) col;
-    const double north = row - (double) row_0;
-    const double east = col - (double) col_0;
-    const float *south_cells = &surface->z_site_m[(row_0 * NAV_HEIGHTMAP_SIZE) + col_0];
-    const float *north_cells = &south_cells[NAV_HEIGHTMAP_SIZE];
-    const bool is_known =
-        (south_cells[0] < NAV_SURFACE_UNKNOWN_M) && (south_cells[1] < NAV_SURFACE_UNKNOWN_M) &&
-        (north_cells[0] < NAV_SURFACE_UNKNOWN_M) && (north_cells[1] < NAV_SURFACE_UNKNOWN_M);
-    const double south_z_m =
-        (double) south_cells[0] + (east * ((double) south_cells[1] - (double) south_cells[0]));
-    const double north_z_m =
-        (double) north_cells[0] + (east * ((double) north_cells[1] - (double) north_cells[0]));
-    *z_m = south_z_m + (north * (north_z_m - south_z_m));
-    return is_known;
-}
-
-double nav_ground_eta_m(const nav_ground_t *ground, double foot_u_m, double foot_v_m)
-{
-    const double last = (double) (NAV_HEIGHTMAP_SIZE - 1);
-    const double dx_m = (ground->forward_xy[0] * foot_u_m) + (ground->right_xy[0] * foot_v_m);
-    const double dy_m = (ground->forward_xy[1] * foot_u_m) + (ground->right_xy[1] * foot_v_m);
-    const double row = ground->row + (dx_m * ground->cells_per_m);
-    const double col = ground->col + (dy_m * ground->cells_per_m);
-    double eta_m = -NAV_ETA_NONE;
-    double z_m = 0.0;
-
-    if ((row >= 0.0) && (col >= 0.0) && (row < last) && (col < last) &&
-        surface_z_m(ground->surface, row, col, &z_m))
-    {
-        const double plane_z_m = ground->z_site_m + (ground->dz_dx * dx_m) + (ground->dz_dy * dy_m);
-        eta_m = (plane_z_m - z_m) * ground->cos_slope;
-    }
-    return eta_m;
-}
-
-void nav_ground_crossings(const nav_ground_t *ground,
-                          uint32_t axis,
-                          double foot_u_m,
-                          double foot_v_m,
-                          double reach_m,
-                          nav_crossings_t *crossings)
-{
-    const double origin = (axis == NAV_GROUND_ROWS) ? ground->row : ground->col;
-    const double per_u = ground->forward_xy[axis] * ground->cells_per_m;
-    const double per_v = ground->right_xy[axis] * ground->cells_per_m;
-    const double middle = origin + (per_u * foot_u_m) + (per_v * foot_v_m);
-    const double half = fabs(per_u) * reach_m;
-
-    crossings->count = 0U;
-    if (fabs(per_u) > 1.0e-6)
-    {
-        const nav_columns_t lines = whole_between(middle - half, middle + half);
-        for (int32_t line = lines.first;
-             (line <= lines.last) && (crossings->count < (uint32_t) NAV_CROSSINGS_MAX); line++)
+        for (int32_t col = cells.cols.first; (col <= cells.cols.last) && is_whole; col++)
         {
-            const double u_m = foot_u_m + (((double) line - middle) / per_u);
-            const double eta_m = nav_ground_eta_m(ground, u_m, foot_v_m);
-            if (eta_m > (-0.5 * NAV_ETA_NONE))
-            {
-                crossings->foot_u_m[crossings->count] = u_m;
-                crossings->eta_m[crossings->count] = eta_m;
-                crossings->count++;
-            }
+            const nav_patch_t patch = nav_ground_patch(ground, row, col);
+            above->low_m = nav_min(above->low_m, patch.above.low_m);
+            above->high_m = nav_max(above->high_m, patch.above.high_m);
+            is_whole = patch.is_whole;
         }
     }
+    return is_whole && (above->high_m >= above->low_m);
 }

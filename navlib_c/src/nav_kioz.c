@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "nav_math.h"
+#include "nav_minmax.h"
 
 /* Least side, radius or triangle height, m. */
 #define NAV_ZONE_SIDE_MIN_M 0.01

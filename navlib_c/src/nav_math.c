@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "nav_minmax.h"
+
 #define NAV_EXPONENT_MASK 0x7FF0000000000000ULL
 
 /* pi/2 in three parts; a whole number below 2^20 times one of the first two is exact. */
@@ -149,6 +151,20 @@ double nav_cos(double angle_rad)
     return sin_in_quadrant(reduced.remainder_rad, nav_wrap_index(reduced.quadrant + 1, 4));
 }
 
+void nav_sincos(double angle_rad, double *sine, double *cosine)
+{
+    if (fabs(angle_rad) < (0.5 * NAV_HALF_PI))
+    {
+        *sine = sin_near_zero(angle_rad);
+        *cosine = cos_near_zero(angle_rad);
+    }
+    else
+    {
+        *sine = nav_sin(angle_rad);
+        *cosine = nav_cos(angle_rad);
+    }
+}
+
 double nav_atan2(double y, double x)
 {
     const double y_size = fabs(y);
@@ -209,35 +225,6 @@ double nav_wrap_angle(double angle_rad)
     return wrapped_rad;
 }
 
-double nav_min(double a, double b)
-{
-    return (a < b) ? a : b;
-}
-
-double nav_max(double a, double b)
-{
-    return (a > b) ? a : b;
-}
-
-double nav_clamp(double x, double low, double high)
-{
-    double clamped = x;
-
-    if (x < low)
-    {
-        clamped = low;
-    }
-    else if (x > high)
-    {
-        clamped = high;
-    }
-    else
-    {
-        /* between the limits, or a NaN, which stays one */
-    }
-    return clamped;
-}
-
 bool nav_floor_index(double x, int32_t *index)
 {
     const bool is_valid = fabs(x) < NAV_INDEX_LIMIT;
@@ -245,7 +232,10 @@ bool nav_floor_index(double x, int32_t *index)
     *index = 0;
     if (is_valid)
     {
-        *index = (int32_t) floor(x);
+        /* towards zero, then down */
+        const int32_t whole = (int32_t) x;
+
+        *index = ((double) whole > x) ? (whole - 1) : whole;
     }
     return is_valid;
 }

@@ -10,6 +10,7 @@
 
 #include "nav_guard.h"
 #include "nav_math.h"
+#include "nav_minmax.h"
 
 #define TURNS ((uint32_t) NAV_TREE_TURNS)
 #define ARCS ((uint32_t) NAV_TREE_ARCS)
@@ -494,89 +495,79 @@ static nav_reason_t test_pose(call_t *call,
     return reason;
 }
 
-/** Tests an arc or turn that begins distance_m along the path, up to the waydisc. */
-static test_t test_walk(call_t *call, const walk_t *walk, double distance_m)
+/** Goes on with a test along an arc or turn that begins distance_m along the path, up to the waydisc,
+ * unless it has failed already. */
+static void test_walk(call_t *call, const walk_t *walk, double distance_m, test_t *test)
 {
     const bool is_turn = fabs(walk->arc.length_m) <= EMPTY_M;
-    test_t test = {NAV_REASON_NONE, best_bounds()};
     bool is_at_goal = false;
 
     for (uint32_t place = 0U;
-         (place < walk->pose_count) && (test.reason == NAV_REASON_NONE) && !is_at_goal; place++)
+         (place < walk->pose_count) && (test->reason == NAV_REASON_NONE) && !is_at_goal; place++)
     {
         const nav_pose2_t pose = walk_pose(walk, place);
-        test.reason = test_pose(call, &pose, distance_m + ((double) (place + 1U) * walk->spacing_m),
-                                &test.bounds);
+        test->reason = test_pose(
+            call, &pose, distance_m + ((double) (place + 1U) * walk->spacing_m), &test->bounds);
         is_at_goal = !is_turn && (goal_distance_m(call, &pose) <= call->in->goal.radius_m);
     }
-    return test;
 }
 
 /** Tests the rest of the path selected before. */
-static test_t test_kept(call_t *call, const nav_path_t *kept)
+static void test_kept(call_t *call, const nav_path_t *kept, test_t *test)
 {
     const nav_pose2_t turned = nav_arc_pose(&call->start, &kept->turn, 1.0);
-    const walk_t turn = arc_walk(call, &call->start, &kept->turn);
     const walk_t along = arc_walk(call, &turned, &kept->first);
     const branch_t first = branch_follow(call, &along);
-    test_t test = test_walk(call, &turn, 0.0);
-    if (test.reason == NAV_REASON_NONE)
+    walk_t walk = arc_walk(call, &call->start, &kept->turn);
+    test_walk(call, &walk, 0.0, test);
+    test_walk(call, &along, 0.0, test);
+    if (!first.is_at_goal)
     {
-        const test_t next = test_walk(call, &along, 0.0);
-        test.reason = next.reason;
-        worsen(&test.bounds, &next.bounds);
+        walk = arc_walk(call, &first.end, &kept->second);
+        test_walk(call, &walk, kept->first.length_m, test);
     }
-    if ((test.reason == NAV_REASON_NONE) && !first.is_at_goal)
-    {
-        const walk_t onward = arc_walk(call, &first.end, &kept->second);
-        const test_t next = test_walk(call, &onward, kept->first.length_m);
-        test.reason = next.reason;
-        worsen(&test.bounds, &next.bounds);
-    }
-    return test;
 }
 
 /** Tests what of a path has not been tested before; bounds are the worst of the whole path. */
-static test_t test_path(call_t *call, nav_tree_t *tree, uint32_t path)
+static void test_path(call_t *call, nav_tree_t *tree, uint32_t path, test_t *test)
 {
     const uint32_t node = path / ARCS;
     const uint32_t turn = node / ARCS;
     const nav_arc_t turning = turn_arc(turn);
     const nav_pose2_t turned = nav_arc_pose(&call->start, &turning, 1.0);
-    const walk_t along = tree_walk(call, &turned, node % ARCS);
-    test_t test = {(nav_reason_t) tree->turn_verdict[turn], tree->turn_bounds[turn]};
+    walk_t walk;
 
     if (tree->turn_verdict[turn] == (uint8_t) NAV_TREE_UNTESTED)
     {
-        const walk_t walk = arc_walk(call, &call->start, &turning);
-        test = test_walk(call, &walk, 0.0);
-        tree->turn_verdict[turn] = (uint8_t) test.reason;
-        tree->turn_bounds[turn] = test.bounds;
+        walk = arc_walk(call, &call->start, &turning);
+        test_walk(call, &walk, 0.0, test);
+        tree->turn_verdict[turn] = (uint8_t) test->reason;
+        tree->turn_bounds[turn] = test->bounds;
     }
-    if (test.reason == NAV_REASON_NONE)
+    test->reason = (nav_reason_t) tree->turn_verdict[turn];
+    test->bounds = tree->turn_bounds[turn];
+    walk = tree_walk(call, &turned, node % ARCS);
+    if (test->reason == NAV_REASON_NONE)
     {
         if (tree->first_verdict[node] == (uint8_t) NAV_TREE_UNTESTED)
         {
-            test = test_walk(call, &along, 0.0);
-            tree->first_verdict[node] = (uint8_t) test.reason;
-            worsen(&test.bounds, &tree->turn_bounds[turn]);
-            tree->first_bounds[node] = test.bounds;
+            test_walk(call, &walk, 0.0, test);
+            tree->first_verdict[node] = (uint8_t) test->reason;
+            tree->first_bounds[node] = test->bounds;
         }
-        test.reason = (nav_reason_t) tree->first_verdict[node];
-        test.bounds = tree->first_bounds[node];
+        test->reason = (nav_reason_t) tree->first_verdict[node];
+        test->bounds = tree->first_bounds[node];
     }
-    if (test.reason == NAV_REASON_NONE)
+    if (test->reason == NAV_REASON_NONE)
     {
-        const branch_t first = branch_follow(call, &along);
+        const branch_t first = branch_follow(call, &walk);
         if (!first.is_at_goal)
         {
-            const walk_t onward = tree_walk(call, &first.end, path % ARCS);
-            test = test_walk(call, &onward, call->params->tree_arc_length_m);
-            worsen(&test.bounds, &tree->first_bounds[node]);
+            walk = tree_walk(call, &first.end, path % ARCS);
+            test_walk(call, &walk, call->params->tree_arc_length_m, test);
         }
-        tree->second_verdict[path] = (uint8_t) test.reason;
+        tree->second_verdict[path] = (uint8_t) test->reason;
     }
-    return test;
 }
 
 static void clear_verdicts(nav_tree_t *tree)
@@ -611,8 +602,15 @@ static void test_paths(call_t *call, nav_tree_t *tree, nav_select_arc_out_t *out
             /* the last resort is a few poses: the budget does not keep it from being tested */
             if ((rest == NAV_REASON_NONE) || ((rest == NAV_REASON_BUDGET) && (path == KEPT)))
             {
-                const test_t test =
-                    (path == KEPT) ? test_kept(call, &tree->kept) : test_path(call, tree, path);
+                test_t test = {NAV_REASON_NONE, best_bounds()};
+                if (path == KEPT)
+                {
+                    test_kept(call, &tree->kept, &test);
+                }
+                else
+                {
+                    test_path(call, tree, path, &test);
+                }
                 out->paths_tested++;
                 tree->path_reason[path] = (uint8_t) test.reason;
                 if (test.reason == NAV_REASON_NONE)

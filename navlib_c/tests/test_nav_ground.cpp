@@ -13,25 +13,36 @@ nav_ground_t placed(const Scene &scene, double x_m, double y_m, double yaw_rad)
 {
     const nav_pose2_t pose = {x_m, y_m, yaw_rad};
     nav_ground_t ground;
-    EXPECT_TRUE(nav_ground_place(&ground, &scene.ctx->surface, &scene.ctx->costmap, &pose));
+    EXPECT_TRUE(nav_ground_place(&ground, &scene.ctx->surface, &scene.ctx->costmap,
+                                 &scene.ctx->relief, &pose));
     return ground;
 }
 
-double slope_20_deg_north(double x_m, double)
+/// Height above the plane, along z, of a heightmap cell.
+double above_of_cell(const nav_ground_t &ground, int row, int col)
 {
-    return std::tan(20.0 * DEG) * x_m;
+    const double north_m = (row - ground.row) * 0.1;
+    const double east_m = (col - ground.col) * 0.1;
+    return (ground.z_site_m + (ground.dz_dx * north_m) + (ground.dz_dy * east_m)) -
+           ground.surface->z_site_m[(row * NAV_HEIGHTMAP_SIZE) + col];
+}
+
+double hills(double x_m, double y_m)
+{
+    return (0.2 * x_m) - (0.1 * y_m) + (0.15 * std::sin(3.0 * x_m) * std::cos(2.0 * y_m));
 }
 
 TEST(Ground, a_plane_has_no_heights_above_itself)
 {
     Scene scene;
     scene.show([](double x, double y) { return (0.3 * x) - (0.1 * y) + 7.0; });
-    const nav_ground_t ground = placed(scene, 1.0, -2.0, 0.7);
+    const nav_ground_t ground = placed(scene, 1.05, -2.05, 0.0);
     for (double u = -2.0; u <= 2.0; u += 0.37)
     {
         for (double v = -2.0; v <= 2.0; v += 0.41)
         {
-            EXPECT_NEAR(0.0, nav_ground_eta_m(&ground, u, v), 1e-5);
+            /* the nearest cell is up to half a cell away, on the plane too */
+            EXPECT_NEAR(0.0, nav_ground_eta_m(&ground, u, v), 0.05 * 0.4);
         }
     }
 }
@@ -55,116 +66,53 @@ TEST(Ground, the_frame_is_orthonormal_on_any_slope)
     }
 }
 
-TEST(Ground, a_cell_above_a_slope_stands_uphill_of_its_foot)
+TEST(Ground, lanes_lead_to_the_same_cells_as_the_axes)
 {
     Scene scene;
-    scene.show(
-        [](double x, double y)
-        {
-            const bool is_pillar = (std::fabs(x - 0.55) < 0.04) && (std::fabs(y - 0.05) < 0.04);
-            return slope_20_deg_north(x, y) + (is_pillar ? 0.5 : 0.0);
-        });
-    const nav_ground_t ground = placed(scene, 0.05, 0.05, 0.0);
-    nav_ground_point_t point;
-    const int32_t row = 155;
-    const int32_t col = 150;
-    ASSERT_TRUE(nav_ground_cell(&ground, row, col, &point));
-    EXPECT_NEAR(0.5 * std::cos(20.0 * DEG), point.eta_m, 0.01);
-    EXPECT_NEAR((0.5 / std::cos(20.0 * DEG)) + (0.5 * std::sin(20.0 * DEG)), point.u_m, 0.01);
-    EXPECT_NEAR(0.0, point.v_m, 1e-3);
-}
-
-TEST(Ground, rows_and_columns_hold_exactly_the_cells_whose_foot_is_in_the_box)
-{
-    Scene scene;
-    scene.show([](double x, double y) { return (0.2 * x) - (0.3 * y); });
-    for (double yaw : {0.0, 0.4, 1.5707963267948966, 2.2, -2.9})
+    scene.show(hills);
+    for (double yaw = -3.1; yaw < 3.1; yaw += 0.37)
     {
         const nav_ground_t ground = placed(scene, 0.33, -0.71, yaw);
-        const nav_box_t box = {0.4, -0.2, 1.1, 0.6};
-        uint32_t counted = 0;
-        uint32_t outside = 0;
-        const nav_columns_t rows = nav_ground_rows(&ground, &box);
-        for (int32_t row = rows.first; row <= rows.last; row++)
+        const nav_lanes_t &lanes = ground.lanes;
+        /* a step along the heading never passes a line by more than one cell */
+        EXPECT_LE(std::fabs(lanes.minor_per_major), 1.0 + 1e-6) << yaw;
+        for (double u : {-1.0, 0.0, 0.7})
         {
-            const nav_columns_t cols = nav_ground_columns(&ground, &box, row, &outside);
-            counted += (cols.last >= cols.first) ? (cols.last - cols.first + 1) : 0;
-        }
-        uint32_t expected = 0;
-        for (int32_t row = 0; row < NAV_HEIGHTMAP_SIZE; row++)
-        {
-            for (int32_t col = 0; col < NAV_HEIGHTMAP_SIZE; col++)
+            for (double v : {-0.8, 0.4})
             {
-                const double dx = (row - ground.row) * 0.1;
-                const double dy = (col - ground.col) * 0.1;
-                const double u = ground.u_of_xy[0] * dx + ground.u_of_xy[1] * dy;
-                const double v = ground.v_of_xy[0] * dx + ground.v_of_xy[1] * dy;
-                const bool is_inside = (std::fabs(u - box.u_m) <= box.half_u_m + 1e-9) &&
-                                       (std::fabs(v - box.v_m) <= box.half_v_m + 1e-9);
-                expected += is_inside ? 1 : 0;
+                const double north = ground.forward_xy[0] * u + ground.right_xy[0] * v;
+                const double east = ground.forward_xy[1] * u + ground.right_xy[1] * v;
+                const double major = lanes.major + lanes.major_per_u * u + lanes.major_per_v * v;
+                const double minor = lanes.minor + lanes.minor_per_u * u + lanes.minor_per_v * v;
+                const bool is_row = lanes.step_major == NAV_HEIGHTMAP_SIZE;
+                EXPECT_NEAR(ground.row + 10.0 * north, is_row ? major : minor, 1e-9);
+                EXPECT_NEAR(ground.col + 10.0 * east, is_row ? minor : major, 1e-9);
+                EXPECT_NEAR(ground.z_site_m + ground.dz_dx * north + ground.dz_dy * east,
+                            lanes.plane_first_m + lanes.plane_major_m * major +
+                                lanes.plane_minor_m * minor,
+                            1e-9);
+                /* along one line */
+                const double aside = 0.3;
+                const double du = aside * lanes.minor_across * lanes.u_per_minor;
+                EXPECT_NEAR(major, major + lanes.major_per_u * du + lanes.major_per_v * aside,
+                            1e-9);
+                EXPECT_NEAR(aside * lanes.minor_across,
+                            lanes.minor_per_u * du + lanes.minor_per_v * aside, 1e-9);
             }
         }
-        EXPECT_EQ(expected, counted);
-        EXPECT_EQ(0U, outside);
     }
-}
-
-TEST(Ground, cells_off_the_map_are_counted_and_not_given)
-{
-    Scene scene;
-    scene.show(flat);
-    const nav_ground_t ground = placed(scene, 14.0, 14.0, 0.0);
-    const nav_box_t box = {1.0, 1.0, 1.0, 1.0};
-    uint32_t outside = 0;
-    uint32_t inside = 0;
-    const nav_columns_t rows = nav_ground_rows(&ground, &box);
-    for (int32_t row = rows.first; row <= rows.last; row++)
-    {
-        const nav_columns_t cols = nav_ground_columns(&ground, &box, row, &outside);
-        EXPECT_LT(cols.last, NAV_HEIGHTMAP_SIZE);
-        inside += (cols.last >= cols.first) ? (cols.last - cols.first + 1) : 0;
-    }
-    EXPECT_EQ(100U, inside);
-    EXPECT_EQ(300U, outside);
-}
-
-TEST(Ground, unknown_corners_make_the_height_unknown)
-{
-    Scene scene;
-    scene.show(flat, [](double x, double) { return (x > 1.0) ? 1.0 : 0.0; });
-    const nav_ground_t ground = placed(scene, 0.0, 0.0, 0.0);
-    EXPECT_NEAR(0.0, nav_ground_eta_m(&ground, 0.5, 0.0), 1e-6);
-    EXPECT_LT(nav_ground_eta_m(&ground, 3.0, 0.0), -0.5 * NAV_ETA_NONE);
-    EXPECT_LT(nav_ground_eta_m(&ground, -30.0, 0.0), -0.5 * NAV_ETA_NONE);
-    EXPECT_LT(nav_ground_eta_m(&ground, 0.0, 30.0), -0.5 * NAV_ETA_NONE);
-    nav_ground_point_t point;
-    EXPECT_FALSE(nav_ground_cell(&ground, 200, 150, &point));
 }
 
 TEST(Ground, there_is_no_place_off_the_costmap_or_where_no_plane_was_fitted)
 {
     Scene scene;
     scene.show(flat, [](double x, double) { return (x > 1.0) ? 1.0 : 0.0; });
+    const nav_ctx_t *ctx = scene.ctx.get();
     nav_ground_t ground;
     const nav_pose2_t off = {100.0, 0.0, 0.0};
     const nav_pose2_t unknown = {8.0, 0.0, 0.0};
-    EXPECT_FALSE(nav_ground_place(&ground, &scene.ctx->surface, &scene.ctx->costmap, &off));
-    EXPECT_FALSE(nav_ground_place(&ground, &scene.ctx->surface, &scene.ctx->costmap, &unknown));
-}
-
-TEST(Ground, any_unknown_corner_makes_the_height_between_four_cells_unknown)
-{
-    for (int corner = 0; corner < 4; corner++)
-    {
-        const double x_hidden = 0.15 + 0.1 * (corner / 2);
-        const double y_hidden = 0.15 + 0.1 * (corner % 2);
-        Scene scene([](nav_params_t &params) { params.surface_fill_neighbors = 9.0; });
-        scene.show(flat, [=](double x, double y)
-                   { return (std::hypot(x - x_hidden, y - y_hidden) < 0.01) ? 1.0 : 0.0; });
-        const nav_ground_t ground = placed(scene, 0.0, 0.0, 0.0);
-        EXPECT_LT(nav_ground_eta_m(&ground, 0.2, 0.2), -0.5 * NAV_ETA_NONE) << corner;
-        EXPECT_NEAR(0.0, nav_ground_eta_m(&ground, 0.4, 0.2), 1e-6) << corner;
-    }
+    EXPECT_FALSE(nav_ground_place(&ground, &ctx->surface, &ctx->costmap, &ctx->relief, &off));
+    EXPECT_FALSE(nav_ground_place(&ground, &ctx->surface, &ctx->costmap, &ctx->relief, &unknown));
 }
 
 TEST(Ground, beyond_every_edge_of_the_map_the_height_is_unknown)
@@ -172,7 +120,7 @@ TEST(Ground, beyond_every_edge_of_the_map_the_height_is_unknown)
     Scene scene;
     scene.show(flat);
     const nav_ground_t ground = placed(scene, 0.0, 0.0, 0.0);
-    for (double far_m : {15.0, 30.0})
+    for (double far_m : {15.1, 30.0})
     {
         EXPECT_LT(nav_ground_eta_m(&ground, far_m, 0.0), -0.5 * NAV_ETA_NONE);
         EXPECT_LT(nav_ground_eta_m(&ground, -far_m, 0.0), -0.5 * NAV_ETA_NONE);
@@ -182,36 +130,89 @@ TEST(Ground, beyond_every_edge_of_the_map_the_height_is_unknown)
     EXPECT_NEAR(0.0, nav_ground_eta_m(&ground, 14.8, -14.8), 1e-6);
 }
 
-TEST(Ground, a_row_beside_the_box_holds_no_columns_on_any_heading)
+TEST(Ground, whole_numbers_between_two_numbers)
+{
+    EXPECT_EQ(3, nav_ground_between(2.2, 5.9).first);
+    EXPECT_EQ(5, nav_ground_between(2.2, 5.9).last);
+    EXPECT_EQ(2, nav_ground_between(2.0, 5.0).first);
+    EXPECT_EQ(5, nav_ground_between(2.0, 5.0).last);
+    EXPECT_EQ(-1, nav_ground_between(-1.0, -0.5).first);
+    const nav_indices_t none = nav_ground_between(5.0, 2.0);
+    EXPECT_LT(none.last, none.first);
+}
+
+TEST(Ground, the_range_around_a_box_holds_every_cell_whose_foot_is_in_it)
 {
     Scene scene;
-    scene.show(flat);
-    const nav_box_t box = {0.0, 0.0, 0.5, 0.3};
-    for (double yaw : {0.0, 0.4, 1.5707963267948966})
+    scene.show(hills);
+    for (double yaw = -3.0; yaw < 3.0; yaw += 0.41)
     {
-        const nav_ground_t ground = placed(scene, 0.05, 0.05, yaw);
-        for (int32_t row : {120, 180})
+        const nav_ground_t ground = placed(scene, 0.33, -0.71, yaw);
+        const nav_box_t box = {0.6, -0.4, 0.5, 0.3};
+        nav_interval_t above;
+        ASSERT_TRUE(nav_ground_range(&ground, &box, &above));
+        int cell_count = 0;
+        for (int row = 0; row < NAV_HEIGHTMAP_SIZE; row++)
         {
-            uint32_t outside = 0;
-            const nav_columns_t cols = nav_ground_columns(&ground, &box, row, &outside);
-            EXPECT_LT(cols.last, cols.first) << yaw;
-            EXPECT_EQ(0U, outside) << yaw;
+            for (int col = 0; col < NAV_HEIGHTMAP_SIZE; col++)
+            {
+                const double north = (row - ground.row) * 0.1;
+                const double east = (col - ground.col) * 0.1;
+                const double u = ground.u_of_xy[0] * north + ground.u_of_xy[1] * east;
+                const double v = ground.v_of_xy[0] * north + ground.v_of_xy[1] * east;
+                if ((std::fabs(u - box.u_m) <= box.half_u_m) &&
+                    (std::fabs(v - box.v_m) <= box.half_v_m))
+                {
+                    cell_count++;
+                    EXPECT_GE(above_of_cell(ground, row, col), above.low_m - 1e-6) << yaw;
+                    EXPECT_LE(above_of_cell(ground, row, col), above.high_m + 1e-6) << yaw;
+                }
+            }
         }
+        EXPECT_GT(cell_count, 40);
     }
 }
 
-TEST(Ground, a_line_gives_no_more_crossings_than_there_is_room_for)
+TEST(Ground, the_range_is_unknown_where_a_cell_is_or_at_the_edge_of_the_map)
+{
+    Scene scene([](nav_params_t &params) { params.surface_fill_neighbors = 9.0; });
+    scene.show(flat, [](double x, double y)
+               { return (std::hypot(x - 1.05, y - 1.05) < 0.01) ? 1.0 : 0.0; });
+    const nav_ground_t ground = placed(scene, 0.0, 0.0, 0.0);
+    nav_interval_t above;
+    const nav_box_t known = {-1.0, -1.0, 0.3, 0.3};
+    const nav_box_t hidden = {1.05, 1.05, 0.3, 0.3};
+    EXPECT_TRUE(nav_ground_range(&ground, &known, &above));
+    EXPECT_FALSE(nav_ground_range(&ground, &hidden, &above));
+    for (double sign : {-1.0, 1.0})
+    {
+        const nav_box_t north = {sign * 15.0, 0.0, 0.3, 0.3};
+        const nav_box_t east = {0.0, sign * 15.0, 0.3, 0.3};
+        EXPECT_FALSE(nav_ground_range(&ground, &north, &above));
+        EXPECT_FALSE(nav_ground_range(&ground, &east, &above));
+    }
+}
+
+TEST(Ground, costmap_cells_that_stick_out_of_the_surface_are_not_given)
 {
     Scene scene;
+    scene.goal = {100.0, 0.0, 1.0};
     scene.show(flat);
+    /* moving on by two heightmap cells leaves the surface's edges inside costmap cells */
+    nav_ctx_t &ctx = *scene.ctx;
+    ASSERT_TRUE(nav_heightmap_center(&ctx.heightmap, 0.25, 0.25));
+    nav_heightmap_surface(&ctx.heightmap, &ctx.params, 1.0, &ctx.surface_state, &ctx.surface);
+    nav_relief_update(&ctx.relief, &ctx.costmap, &ctx.costmap_state, &ctx.surface);
     const nav_ground_t ground = placed(scene, 0.0, 0.0, 0.0);
-    nav_crossings_t crossings;
-    nav_ground_crossings(&ground, NAV_GROUND_ROWS, 0.0, 0.0, 10.0, &crossings);
-    EXPECT_EQ(static_cast<uint32_t>(NAV_CROSSINGS_MAX), crossings.count);
-    nav_ground_crossings(&ground, NAV_GROUND_ROWS, 0.0, 0.0, 1.0, &crossings);
-    EXPECT_EQ(20U, crossings.count);
-    nav_ground_crossings(&ground, NAV_GROUND_COLUMNS, 0.0, 0.0, 1.0, &crossings);
-    EXPECT_EQ(0U, crossings.count);
+    nav_cost_box_t cells;
+    const nav_box_t south = {-14.6, 0.0, 0.05, 0.05};
+    const nav_box_t middle = {0.0, 0.0, 1.0, 1.0};
+    EXPECT_FALSE(nav_ground_cost_box(&ground, &south, &cells));
+    ASSERT_TRUE(nav_ground_cost_box(&ground, &middle, &cells));
+    for (int32_t row = cells.rows.first; row <= cells.rows.last; row++)
+    {
+        EXPECT_TRUE(nav_ground_patch(&ground, row, cells.cols.first).is_whole);
+    }
 }
 
 } // namespace

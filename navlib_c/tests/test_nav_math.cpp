@@ -9,6 +9,7 @@
 extern "C"
 {
 #include "nav_math.h"
+#include "nav_minmax.h"
 }
 
 namespace

@@ -25,6 +25,16 @@ nav_vehicle_t vehicle_of(const std::function<void(nav_params_t &)> &change = {})
     return vehicle;
 }
 
+constexpr double TOLERANCE_M = 1e-10;
+
+/// The state for six wheel heights, looked for from level standing.
+nav_linkage_t settled(const nav_vehicle_t &vehicle, const double height_m[NAV_WHEELS])
+{
+    nav_linkage_t linkage = {};
+    EXPECT_TRUE(nav_vehicle_settle(&vehicle, height_m, TOLERANCE_M, &linkage));
+    return linkage;
+}
+
 /// Curiosity's official geometry: wheels of 25 cm under the same links.
 nav_vehicle_t curiosity()
 {
@@ -62,9 +72,8 @@ TEST(Vehicle, settles_to_the_golden_table_within_a_hundredth_of_a_degree)
     const nav_vehicle_t vehicle = curiosity();
     for (const Golden &golden : GOLDEN)
     {
-        double state[NAV_LINKAGE_STATES];
-        double inverse[NAV_LINKAGE_STATES][NAV_WHEELS];
-        ASSERT_TRUE(nav_vehicle_settle(&vehicle, golden.height_m, state, inverse));
+        const nav_linkage_t linkage = settled(vehicle, golden.height_m);
+        const double *state = linkage.state;
         EXPECT_NEAR(golden.rocker_deg, state[NAV_LINKAGE_ROCKER] / DEG, 0.01);
         EXPECT_NEAR(golden.bogie_left_deg, state[NAV_LINKAGE_BOGIE_LEFT] / DEG, 0.01);
         EXPECT_NEAR(golden.bogie_right_deg, state[NAV_LINKAGE_BOGIE_RIGHT] / DEG, 0.01);
@@ -90,9 +99,8 @@ TEST(Vehicle, raising_all_wheels_raises_the_body_and_nothing_else)
 {
     const nav_vehicle_t vehicle = vehicle_of();
     const double raised[NAV_WHEELS] = {0.2, 0.2, 0.2, 0.2, 0.2, 0.2};
-    double state[NAV_LINKAGE_STATES];
-    double inverse[NAV_LINKAGE_STATES][NAV_WHEELS];
-    ASSERT_TRUE(nav_vehicle_settle(&vehicle, raised, state, inverse));
+    const nav_linkage_t linkage = settled(vehicle, raised);
+    const double *state = linkage.state;
     EXPECT_NEAR(0.2, state[NAV_LINKAGE_HEIGHT], 1e-9);
     for (int k = NAV_LINKAGE_ROLL; k < NAV_LINKAGE_STATES; k++)
     {
@@ -104,9 +112,8 @@ TEST(Vehicle, shares_of_the_six_wheels_in_the_body_height_add_up_to_one)
 {
     const nav_vehicle_t vehicle = vehicle_of();
     const double flat_m[NAV_WHEELS] = {0};
-    double state[NAV_LINKAGE_STATES];
-    double inverse[NAV_LINKAGE_STATES][NAV_WHEELS];
-    ASSERT_TRUE(nav_vehicle_settle(&vehicle, flat_m, state, inverse));
+    const nav_linkage_t linkage = settled(vehicle, flat_m);
+    const auto &inverse = linkage.inverse;
     double sum = 0.0;
     for (double share : inverse[NAV_LINKAGE_HEIGHT])
     {
@@ -168,13 +175,11 @@ TEST(Vehicle, settling_finds_the_state_that_made_the_heights)
         }
         double height_m[NAV_WHEELS];
         double jacobian[NAV_WHEELS][NAV_LINKAGE_STATES];
-        double state[NAV_LINKAGE_STATES];
-        double inverse[NAV_LINKAGE_STATES][NAV_WHEELS];
         nav_vehicle_wheel_heights(&vehicle, made, height_m, jacobian);
-        ASSERT_TRUE(nav_vehicle_settle(&vehicle, height_m, state, inverse));
+        const nav_linkage_t linkage = settled(vehicle, height_m);
         for (int k = 0; k < NAV_LINKAGE_STATES; k++)
         {
-            EXPECT_NEAR(made[k], state[k], 1e-7);
+            EXPECT_NEAR(made[k], linkage.state[k], 1e-7);
         }
     }
 }
@@ -183,9 +188,8 @@ TEST(Vehicle, heights_no_linkage_can_take_are_refused)
 {
     const nav_vehicle_t vehicle = vehicle_of();
     const double torn_m[NAV_WHEELS] = {0.0, 5.0, 0.0, 0.0, -5.0, 0.0};
-    double state[NAV_LINKAGE_STATES];
-    double inverse[NAV_LINKAGE_STATES][NAV_WHEELS];
-    EXPECT_FALSE(nav_vehicle_settle(&vehicle, torn_m, state, inverse));
+    nav_linkage_t linkage = {};
+    EXPECT_FALSE(nav_vehicle_settle(&vehicle, torn_m, TOLERANCE_M, &linkage));
 }
 
 TEST(Vehicle, a_linkage_without_levers_is_refused)
@@ -196,9 +200,69 @@ TEST(Vehicle, a_linkage_without_levers_is_refused)
         vehicle.hub_y_m[wheel] = 0.0;
     }
     const double flat_m[NAV_WHEELS] = {0};
-    double state[NAV_LINKAGE_STATES];
-    double inverse[NAV_LINKAGE_STATES][NAV_WHEELS];
-    EXPECT_FALSE(nav_vehicle_settle(&vehicle, flat_m, state, inverse));
+    nav_linkage_t linkage = {};
+    EXPECT_FALSE(nav_vehicle_settle(&vehicle, flat_m, TOLERANCE_M, &linkage));
+}
+
+TEST(Vehicle, a_bogie_whose_wheels_stand_on_one_spot_is_refused)
+{
+    const double raised_m[NAV_WHEELS] = {0.0, 0.1, 0.0, 0.0, 0.0, 0.0};
+    for (int side = 0; side < 2; side++)
+    {
+        nav_vehicle_t vehicle = vehicle_of();
+        vehicle.hub_x_m[1] = -0.5;
+        vehicle.hub_x_m[2] = -0.5;
+        nav_linkage_t linkage = {};
+        EXPECT_FALSE(nav_vehicle_settle(&vehicle, raised_m, TOLERANCE_M, &linkage)) << side;
+    }
+}
+
+TEST(Vehicle, the_inverse_is_that_of_the_jacobian)
+{
+    const nav_vehicle_t vehicle = vehicle_of();
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> height(-0.15, 0.15);
+    for (int trial = 0; trial < 200; trial++)
+    {
+        double height_m[NAV_WHEELS];
+        for (double &h : height_m)
+        {
+            h = height(random);
+        }
+        const nav_linkage_t linkage = settled(vehicle, height_m);
+        nav_linkage_t again = linkage; /* starts at the solution: derivatives are taken there */
+        ASSERT_TRUE(nav_vehicle_settle(&vehicle, height_m, TOLERANCE_M, &again));
+        double reached_m[NAV_WHEELS];
+        double jacobian[NAV_WHEELS][NAV_LINKAGE_STATES];
+        nav_vehicle_wheel_heights(&vehicle, linkage.state, reached_m, jacobian);
+        for (int row = 0; row < NAV_LINKAGE_STATES; row++)
+        {
+            for (int col = 0; col < NAV_LINKAGE_STATES; col++)
+            {
+                double product = 0.0;
+                for (int wheel = 0; wheel < NAV_WHEELS; wheel++)
+                {
+                    product += again.inverse[row][wheel] * jacobian[wheel][col];
+                }
+                EXPECT_NEAR((row == col) ? 1.0 : 0.0, product, 1e-6);
+            }
+        }
+    }
+}
+
+TEST(Vehicle, what_is_left_over_and_how_far_the_derivatives_are_is_told)
+{
+    const nav_vehicle_t vehicle = vehicle_of();
+    const double height_m[NAV_WHEELS] = {0.02, 0.0, 0.0, 0.0, 0.0, 0.0};
+    nav_linkage_t near = {};
+    ASSERT_TRUE(nav_vehicle_settle(&vehicle, height_m, 1e-3, &near));
+    EXPECT_LE(near.residual_max_m, 1e-3);
+    EXPECT_NEAR(0.02, near.moved_max_m, 1e-9);
+    /* far from the guess the derivatives are taken anew */
+    const double far_m[NAV_WHEELS] = {0.2, 0.0, 0.0, 0.0, 0.0, 0.0};
+    nav_linkage_t far = {};
+    ASSERT_TRUE(nav_vehicle_settle(&vehicle, far_m, 1e-3, &far));
+    EXPECT_LT(far.moved_max_m, 0.03);
 }
 
 } // namespace

@@ -53,6 +53,7 @@ def ace_bounds(navlib: Navlib, poses: Poses, uncertainty: npt.NDArray[np.float64
     scene.vehicle = ffi.addressof(ctx, "vehicle")
     scene.surface = ffi.addressof(ctx, "surface")
     scene.costmap = ffi.addressof(ctx, "costmap")
+    scene.relief = ffi.addressof(ctx, "relief")
     bounds: Message = np.zeros(len(poses), dtype_of("nav_ace_bounds_t"))
     out = ffi.from_buffer("nav_ace_bounds_t[]", bounds, require_writable=True)
     pose_c = ffi.new("nav_pose2_t *")

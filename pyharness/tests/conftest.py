@@ -13,6 +13,7 @@ from pyharness.planner import Planner
 from pyharness.records import DriveInfo, Outcome, RecordStream, Waypoint, end_payload
 from pyharness.status import Mode, Reason, Status
 from pyharness.tests.executive_drive import Drive
+from pyharness.tests.quick_drive import record_drive
 
 TICK_S = 0.125
 SPEED_M_S = 0.05
@@ -241,3 +242,16 @@ def some_records():
     stream.publish(0, 2.0, end_payload(Outcome("goal_reached")))
     assert all(record.kind == 0 or record.kind in native_schema().kinds for record in records)
     return records
+
+
+@pytest.fixture
+def record_quick_drive():
+    return record_drive
+
+
+@pytest.fixture(scope="session")
+def quick_drive(tmp_path_factory):
+    """The recording of a short drive with small clouds."""
+    path = tmp_path_factory.mktemp("recorded") / "drive.dp"
+    assert record_drive(path, {}).is_reached
+    return path

@@ -1,8 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from pyharness.dp import Kind, Schema, native_schema, new_message, used_bytes
+from pyharness.dp import (
+    FieldDefinition,
+    Kind,
+    RecordDefinition,
+    Schema,
+    layout_difference,
+    native_schema,
+    new_message,
+    used_bytes,
+)
 from pyharness.layout import dtype_of
 
 
@@ -58,3 +69,36 @@ def test_a_schema_that_refers_to_itself_or_to_nothing_is_refused():
 
 def test_a_new_message_is_all_zero():
     assert not np.any(np.frombuffer(new_message(Kind.SELECT_ARC_IN).tobytes(), np.uint8))
+
+
+def test_a_schema_that_would_fill_the_memory_is_refused():
+    row = RecordDefinition("big_t", 1 << 30, (FieldDefinition("x", "uint8_t", 1 << 30, 0, "", ""),))
+    with pytest.raises(ValueError, match="expected at most 16777216"):
+        Schema("little", {"big_t": row}, {}).dtype("big_t")
+
+
+def test_a_schema_of_many_levels_is_read_at_once():
+    rows = {"t0": RecordDefinition("t0", 1, (FieldDefinition("x", "uint8_t", 1, 0, "", ""),))}
+    for level in range(1, 25):
+        inner, size = f"t{level - 1}", 2**level
+        fields = tuple(
+            FieldDefinition(name, inner, 1, offset, "", "")
+            for name, offset in (("a", 0), ("b", size // 2))
+        )
+        rows[f"t{level}"] = RecordDefinition(f"t{level}", size, fields)
+    assert Schema("little", rows, {}).dtype("t24").itemsize == 2**24
+
+
+def test_layouts_that_differ_are_named():
+    native = native_schema()
+    assert layout_difference(native) is None
+    assert layout_difference(replace(native, parameters=())) == "Navlib had other parameters"
+    kinds = {**native.kinds, 11: replace(native.kinds[11], name="OTHER")}
+    assert (
+        layout_difference(replace(native, kinds=kinds, _dtypes={}))
+        == "EVALUATE_ARC_IN has another layout"
+    )
+    pose = native.records["nav_pose_t"]
+    renamed = replace(pose, fields=(replace(pose.fields[0], name="x_m"), *pose.fields[1:]))
+    changed = replace(native, records={**native.records, pose.type: renamed}, _dtypes={})
+    assert layout_difference(changed) == "PROCESS_DISPARITY_IN has another layout"

@@ -2,13 +2,14 @@
 import os
 import random
 import struct
-import zlib
+import time
 
 import pytest
 
-from pyharness.dp import Kind, native_schema
-from pyharness.dp_file import BYTE_ORDER_MARK, MAGIC, DpReader, DpWriter
+from pyharness.dp import Kind, layout_difference, native_schema, to_native
+from pyharness.dp_file import DpReader, DpWriter
 from pyharness.errors import DpFileError
+from pyharness.tests.byte_order import write_swapped
 
 FILE_HEADER_BYTES = 24
 
@@ -25,6 +26,13 @@ def golden(tmp_path, drive_info, some_records):
 def read(path):
     with DpReader(path) as reader:
         return list(reader.records()), reader.damage
+
+
+def record_starts(data, records):
+    starts = [header_bytes(data)]
+    for record in records[:-1]:
+        starts.append(starts[-1] + 32 + (len(record.payload) + 7) // 8 * 8)
+    return starts
 
 
 def header_bytes(data):
@@ -54,17 +62,6 @@ def test_every_part_begins_at_a_multiple_of_eight(golden):
     assert header_bytes(data) % 8 == 0
 
 
-def test_records_before_the_flush_point_survive_a_killed_writer(tmp_path, drive_info, some_records):
-    writer = DpWriter(tmp_path / "cut.dp", drive_info)
-    writer.write(some_records[0])
-    writer.flush()
-    records, damage = read(tmp_path / "cut.dp")
-    writer.close()
-    assert records == some_records[:1]
-    assert damage is not None
-    assert damage.reason == "the file ends without its end record"
-
-
 @pytest.mark.faults
 def test_a_file_cut_anywhere_gives_all_whole_records_and_the_offset(golden, some_records):
     data = golden.read_bytes()
@@ -92,8 +89,9 @@ def test_a_header_cut_anywhere_is_one_error(golden):
 
 
 @pytest.mark.faults
-def test_no_flipped_bit_goes_unnoticed(golden, some_records):
+def test_a_flipped_bit_costs_one_record_and_is_reported_with_its_offset(golden, some_records):
     data = golden.read_bytes()
+    starts = record_starts(data, some_records)
     rng = random.Random(1)
     for _ in range(400):
         place, bit = rng.randrange(len(data)), 1 << rng.randrange(8)
@@ -103,20 +101,52 @@ def test_no_flipped_bit_goes_unnoticed(golden, some_records):
         except DpFileError:
             assert place < header_bytes(data)
             continue
-        assert damage is not None
-        assert damage.offset <= place
-        assert records == some_records[: len(records)]
+        hit = max(index for index, start in enumerate(starts) if start <= place)
+        assert records == some_records[:hit] + some_records[hit + 1 :]
+        assert damage.offset == starts[hit]
+
+
+@pytest.mark.faults
+def test_records_behind_lost_bytes_are_found_and_the_loss_is_counted(golden, some_records):
+    data = golden.read_bytes()
+    starts = record_starts(data, some_records)
+    golden.write_bytes(data[: starts[1] + 5] + data[starts[2] + 3 :])
+    records, damage = read(golden)
+    assert records == [some_records[0], *some_records[3:]]
+    assert damage.offset == starts[1]
+    assert damage.reason.endswith("; 2 records lost")
+
+
+@pytest.mark.faults
+def test_a_record_cut_out_cleanly_is_missed(golden, some_records):
+    data = golden.read_bytes()
+    starts = record_starts(data, some_records)
+    golden.write_bytes(data[: starts[1]] + data[starts[2] :])
+    records, damage = read(golden)
+    assert records == [some_records[0], *some_records[2:]]
+    assert damage.reason == "record number 2, expected 1; 1 record lost"
+
+
+@pytest.mark.faults
+def test_a_long_stretch_of_marks_is_searched_in_no_time(golden, some_records):
+    data = golden.read_bytes()
+    golden.write_bytes(data[:-100] + struct.pack("=I", 0x52444E45) * 500_000 + data[-100:])
+    start_s = time.perf_counter()
+    records, damage = read(golden)
+    assert time.perf_counter() - start_s < 5.0
+    assert records[:-1] == some_records[: len(records) - 1]
+    assert damage is not None
 
 
 @pytest.mark.faults
 def test_swapped_and_repeated_records_are_damage(tmp_path, drive_info, some_records):
-    for order in ([1, 0], [0, 0], [0, 2]):
+    for order, kept in (([1, 0], [1]), ([0, 0], [0]), ([0, 2], [0, 2])):
         path = tmp_path / f"order{order}.dp"
         with DpWriter(path, drive_info) as writer:
             for index in order:
                 writer.write(some_records[index])
         records, damage = read(path)
-        assert len(records) == (order[0] == 0)
+        assert [record.sequence for record in records] == kept
         assert "record number" in damage.reason
 
 
@@ -137,33 +167,18 @@ def test_a_record_longer_than_its_struct_is_damage(tmp_path, drive_info, some_re
 
 
 def test_a_file_of_the_other_byte_order_is_read(golden, tmp_path, some_records):
-    data = golden.read_bytes()
-    other = ">" if struct.pack("=I", 1) == struct.pack("<I", 1) else "<"
-    size = struct.unpack_from("=I", data, 20)[0]
-    values = struct.unpack_from("=4I", data, 8)
-    head = MAGIC + struct.pack(f"{other}4I", *values) + data[24 : 24 + size]
-    swapped = head + struct.pack(f"{other}2I", zlib.crc32(head), 0)
-    for record in some_records:
-        payload = record.payload
-        if record.kind == Kind.TRUTH:
-            truth = native_schema().decode(record.kind, payload)
-            payload = truth.astype(truth.dtype.newbyteorder()).tobytes()
-        mark = struct.unpack_from("=I", data, header_bytes(data))[0]
-        fields = (mark, record.kind, len(payload), record.sequence, record.time_s)
-        part = struct.pack(f"{other}4Id", *fields)
-        checks = struct.pack(f"{other}2I", zlib.crc32(part), zlib.crc32(payload))
-        swapped += part + checks + payload + bytes(-len(payload) % 8)
-    assert values[0] == BYTE_ORDER_MARK
     path = tmp_path / "swapped.dp"
-    path.write_bytes(swapped)
+    write_swapped(golden, path)
+    assert path.read_bytes() != golden.read_bytes()
     with DpReader(path) as reader:
-        truths = [
-            reader.schema.decode(item.kind, item.payload)
-            for item in reader.records()
-            if item.kind == Kind.TRUTH
-        ]
+        assert reader.schema.byte_order != native_schema().byte_order
+        records = list(reader.records())
         assert reader.damage is None
-    assert float(truths[0]["distance_driven_m"]) == 4.0
+        assert layout_difference(reader.schema) is None
+        for record, original in zip(records, some_records, strict=True):
+            if record.kind:
+                native = to_native(reader.schema, record.kind, record.payload)
+                assert native == original.payload
 
 
 @pytest.mark.faults

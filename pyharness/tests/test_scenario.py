@@ -118,6 +118,34 @@ def test_the_seed_drives_the_terrain_unless_that_has_its_own():
     assert load_scenario(None, {"seed": 9, "terrain.seed": 2}).terrain.seed == 2
 
 
+@pytest.mark.parametrize("text", ["", "vehicle: perseverance", "vehicle: mine.yaml", "inline"])
+def test_a_part_of_any_vehicle_can_be_set(tmp_path, text):
+    mine = dump_model(load_vehicle(overrides={"name": "mine"}))
+    (tmp_path / "mine.yaml").write_text(mine)
+    if text == "inline":
+        text = "vehicle:\n" + "".join(f"  {line}\n" for line in mine.splitlines())
+    path = tmp_path / "s.yaml"
+    path.write_text(text)
+    scenario = load_scenario(path, {"vehicle.settling.wheel": "cylinder"})
+    assert scenario.vehicle.settling.wheel == "cylinder"
+    assert scenario.vehicle.name == (
+        "mine" if "perseverance" not in text and text else "perseverance"
+    )
+    plain = load_scenario(path, {})
+    assert scenario.vehicle.geometry == plain.vehicle.geometry
+    assert plain.vehicle.settling.wheel == "disc"
+
+
+def test_a_bad_part_of_a_vehicle_is_one_line(tmp_path):
+    (problem,) = problems(tmp_path, "", {"vehicle.settling.wheel": "ball"})
+    assert problem == (
+        "--set vehicle.settling.wheel: expected one of point, disc, cylinder, got 'ball'"
+        " (known: point, disc, cylinder)"
+    )
+    (problem,) = problems(tmp_path, "", {"vehicle.settling.weel": "disc"})
+    assert problem == "--set vehicle.settling.weel: unknown key, did you mean 'wheel'?"
+
+
 def test_the_vehicle_tells_navlib_its_geometry_and_limits():
     given = vehicle_params(load_vehicle())
     defaults = param_values({})
@@ -206,3 +234,32 @@ def test_a_resolved_scenario_of_arcs_is_read_back(tmp_path):
     scenario = load_scenario(None, {"arcs": [{"length_m": 2.0}], "executive.compute": "zero"})
     (tmp_path / "s.yaml").write_text(dump_model(scenario))
     assert load_scenario(tmp_path / "s.yaml", {}) == scenario
+
+
+def test_parameters_of_a_planner_are_checked_with_their_place(tmp_path):
+    text = "planner: gestalt\nplanner_params:\n  near_weight: 0.5\n  far_weight: 1\n"
+    wrong, unknown = problems(tmp_path, text)
+    assert wrong == "3:3: planner_params.near_weight: expected 1 to 20, got 0.5"
+    assert unknown.startswith("4:3: planner_params.far_weight: unknown parameter (known: cell_")
+    (line,) = problems(tmp_path, "planner: gestalt", {"planner_params.arc_count": 1.0})
+    assert line == "--set planner_params.arc_count: expected 3 to 101, got 1"
+    (line,) = problems(tmp_path, "planner_params: {arc_count: 5}")
+    assert line == "1:18: planner_params.arc_count: unknown parameter (known: none)"
+
+
+def test_a_resolved_scenario_holds_all_parameters_of_its_planner(tmp_path):
+    scenario = load_scenario(None, {"planner": "rrtsharp", "planner_params.vertices": 77})
+    assert scenario.planner_params["vertices"] == 77.0
+    assert scenario.planner_params["goal_bias"] == 0.05
+    path = tmp_path / "scenario.yaml"
+    path.write_text(dump_model(scenario))
+    assert load_scenario(path, {}) == scenario
+
+
+def test_another_planner_than_that_of_the_file_has_its_own_defaults(tmp_path):
+    path = tmp_path / "scenario.yaml"
+    path.write_text("planner: rrtsharp\nplanner_params: {vertices: 77}\n")
+    assert load_scenario(path, {"planner": "enav"}).planner_params == {}
+    assert load_scenario(path, {"planner": "rrtsharp"}).planner_params["vertices"] == 77.0
+    given = {"planner": "gestalt", "planner_params.arc_count": 7}
+    assert "unknown parameter" in str(problems(tmp_path, path.read_text(), given))

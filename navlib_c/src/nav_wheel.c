@@ -1,0 +1,609 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file nav_wheel.c
+ * @brief What stands in the box of one wheel, and how high its hub can be.
+ */
+#include "nav_wheel.h"
+
+#include <math.h>
+
+#include "nav_math.h"
+#include "nav_minmax.h"
+
+#define LEAN_SCAN_M 0.6 /* largest distance in height between a hub and what stands in its box */
+#define PARALLEL 1.0e-9
+
+#define NOTHING (-0.5 * NAV_ETA_NONE)
+
+/* Lines of the grid that are looked at under a wheel. A wheel whose places lie across more of them is
+ * given the heights of all ground around. */
+#define LINES_MAX 20U
+
+/* Places are taken in parts of at most this half length: the lower end is lost by less. */
+#define PART_HALF_M 0.05
+
+/* ------------------------------------------------------------------ the box */
+
+/** One line of the grid seen from a wheel. */
+typedef struct
+{
+    const float *z_site_m; /* first cell */
+    double plane_m;        /* z of the plane at the first cell */
+    double minor;          /* where the line crosses the middle of the box, in cells */
+    double u_m;            /* foot of that point */
+} line_t;
+
+static line_t line_of(const nav_ground_t *ground, const nav_box_t *box, int32_t major)
+{
+    const nav_lanes_t *lanes = &ground->lanes;
+    const double ahead = ((double) major - lanes->major) -
+                         ((lanes->major_per_u * box->u_m) + (lanes->major_per_v * box->v_m));
+    const line_t line = {
+        &ground->surface->z_site_m[major * lanes->step_major],
+        lanes->plane_first_m + (lanes->plane_major_m * (double) major),
+        lanes->minor + (lanes->minor_per_u * box->u_m) + (lanes->minor_per_v * box->v_m) +
+            (lanes->minor_per_major * ahead),
+        box->u_m + (lanes->u_per_major * ahead),
+    };
+    return line;
+}
+
+/** Lines that a box touches. */
+static nav_indices_t lines_across(const nav_lanes_t *lanes, const nav_box_t *box)
+{
+    const double middle =
+        lanes->major + (lanes->major_per_u * box->u_m) + (lanes->major_per_v * box->v_m);
+    const double half =
+        (fabs(lanes->major_per_u) * box->half_u_m) + (fabs(lanes->major_per_v) * box->half_v_m);
+    return nav_ground_between(middle - half, middle + half);
+}
+
+/** Cells of a line whose foot is in the box. */
+static nav_indices_t cells_across(const nav_lanes_t *lanes,
+                                  const nav_box_t *box,
+                                  const line_t *line)
+{
+    const double reach = fabs(lanes->minor_across) * box->half_v_m;
+    double low = line->minor - reach;
+    double high = line->minor + reach;
+    if (fabs(lanes->u_per_minor) > PARALLEL)
+    {
+        /* where the line leaves the box at its front and back */
+        const double middle = line->minor + ((box->u_m - line->u_m) / lanes->u_per_minor);
+        const double half = box->half_u_m / fabs(lanes->u_per_minor);
+        low = nav_max(low, middle - half);
+        high = nav_min(high, middle + half);
+    }
+    else if (fabs(line->u_m - box->u_m) > box->half_u_m)
+    {
+        high = low - 1.0;
+    }
+    else
+    {
+        /* the whole line lies between front and back */
+    }
+    return nav_ground_between(low, high);
+}
+
+nav_box_t nav_wheel_feet(const nav_ground_t *ground, const nav_footprint_t *footprint)
+{
+    nav_box_t feet = footprint->box;
+    feet.half_u_m +=
+        (NAV_ETA_SCAN_M * fabs(ground->rise_forward)) + (LEAN_SCAN_M * fabs(footprint->pitch_rad));
+    feet.half_v_m +=
+        (NAV_ETA_SCAN_M * fabs(ground->rise_right)) + (LEAN_SCAN_M * fabs(footprint->roll_rad));
+    return feet;
+}
+
+/** Does a point of the ground stand in the box? It is upright on the body; its place is the hub's fore
+ * and aft, the foot's sideways. */
+static bool is_in_box(const nav_ground_t *ground,
+                      const nav_footprint_t *footprint,
+                      double foot_u_m,
+                      double foot_v_m,
+                      double above_m)
+{
+    const nav_box_t *box = &footprint->box;
+    const double over_hub_m = (above_m * ground->cos_slope) - footprint->hub_m;
+    const double u_m =
+        foot_u_m + (above_m * ground->forward_up) + (footprint->pitch_rad * over_hub_m);
+    const double v_m = foot_v_m + (above_m * ground->right_up) -
+                       (footprint->roll_rad * (over_hub_m + footprint->radius_m));
+    return (fabs(u_m - box->u_m) <= box->half_u_m) && (fabs(v_m - box->v_m) <= box->half_v_m);
+}
+
+/** Takes the cells of a line into a span; only those that would widen it are looked at closely. */
+static void span_line(const nav_ground_t *ground,
+                      const nav_footprint_t *footprint,
+                      const line_t *line,
+                      const nav_indices_t *cells,
+                      nav_span_t *span)
+{
+    const nav_lanes_t *lanes = &ground->lanes;
+    const float *z_site_m = &line->z_site_m[cells->first * lanes->step_minor];
+    double plane_m = line->plane_m + (lanes->plane_minor_m * (double) cells->first);
+    for (int32_t cell = cells->first; cell <= cells->last; cell++)
+    {
+        const double above_m = plane_m - (double) *z_site_m;
+        if ((above_m < span->above.low_m) || (above_m > span->above.high_m))
+        {
+            const double off = (double) cell - line->minor;
+            const double foot_v_m = footprint->box.v_m + (off / lanes->minor_across);
+            if (above_m < NOTHING)
+            {
+                span->unknown_count++;
+            }
+            else if (is_in_box(ground, footprint, line->u_m + (off * lanes->u_per_minor), foot_v_m,
+                               above_m))
+            {
+                span->above.low_m = nav_min(span->above.low_m, above_m);
+                span->above.high_m = nav_max(span->above.high_m, above_m);
+            }
+            else
+            {
+                /* its foot is in the box, but it leans out of it */
+            }
+        }
+        plane_m += lanes->plane_minor_m;
+        z_site_m = &z_site_m[lanes->step_minor];
+    }
+}
+
+/** Cuts indices to those on the map. @return the number cut off */
+static uint32_t cut_to_map(nav_indices_t *indices)
+{
+    const int32_t count = (indices->last - indices->first) + 1;
+    indices->first = (indices->first < 0) ? 0 : indices->first;
+    indices->last = (indices->last < NAV_HEIGHTMAP_SIZE) ? indices->last : (NAV_HEIGHTMAP_SIZE - 1);
+    const int32_t left =
+        (indices->last >= indices->first) ? ((indices->last - indices->first) + 1) : 0;
+    return (count > left) ? (uint32_t) (count - left) : 0U;
+}
+
+nav_span_t nav_wheel_span(const nav_ground_t *ground, const nav_footprint_t *footprint)
+{
+    const nav_lanes_t *lanes = &ground->lanes;
+    const nav_box_t feet = nav_wheel_feet(ground, footprint);
+    const nav_indices_t lines = lines_across(lanes, &feet);
+    nav_span_t span = {{NAV_ETA_NONE, -NAV_ETA_NONE}, 0U, 0U};
+
+    for (int32_t major = lines.first; major <= lines.last; major++)
+    {
+        const bool is_on_map = (major >= 0) && (major < NAV_HEIGHTMAP_SIZE);
+        const line_t line = line_of(ground, &feet, is_on_map ? major : 0);
+        nav_indices_t cells = cells_across(lanes, &feet, &line);
+        const uint32_t off_count = is_on_map ? cut_to_map(&cells) : 1U;
+        span.unknown_count += off_count;
+        span.cell_count += off_count;
+        if (is_on_map && (cells.last >= cells.first))
+        {
+            span.cell_count += (uint32_t) ((cells.last - cells.first) + 1);
+            span_line(ground, footprint, &line, &cells, &span);
+        }
+    }
+    return span;
+}
+
+/* ------------------------------------------------------------------ the hub */
+
+/** Ground under a wheel's places, line by line. Heights are of the ground, above the plane. */
+typedef struct
+{
+    int32_t first; /* line */
+    uint32_t count;
+    double u_m[LINES_MAX];   /* foot of the middle, from that of the places */
+    double low_m[LINES_MAX]; /* lowest between the sides of the places */
+    double under_m
+        [LINES_MAX]; /* no cell that the sides touch between here and the next line is lower */
+    double over_m[LINES_MAX]; /* or higher */
+} profile_t;
+
+/** What stays the same for one wheel. */
+typedef struct
+{
+    const nav_ground_t *ground;
+    const nav_box_t *places;
+    double radius_m;
+    double half_minor; /* half width of the places along a line, in cells */
+    double half_u_m;   /* and how far the heading's place moves along that */
+    int32_t aside;     /* cells by which a side can move on its way to the next line: 0 or 1 */
+} track_t;
+
+/** A point of the ground that a disc could touch. */
+typedef struct
+{
+    double u_m;
+    double eta_m;
+} touch_t;
+
+/** Height over the ground of a hub whose disc touches it at a distance fore or aft; 0: does not. */
+static double disc_m(double radius_m, double along_m)
+{
+    return sqrt(nav_max((radius_m * radius_m) - (along_m * along_m), 0.0));
+}
+
+static touch_t touch_at(const track_t *track, double foot_u_m, double above_m)
+{
+    const touch_t touch = {(foot_u_m + (above_m * track->ground->forward_up)) - track->places->u_m,
+                           above_m * track->ground->cos_slope};
+    return touch;
+}
+
+/** Ground between two points: straight but for a bulge, and nowhere higher than its highest cell. */
+typedef struct
+{
+    touch_t from;
+    touch_t to;
+    double bulge_m;
+    double over_m;
+} stretch_t;
+
+/**
+ * Raises the highest hub by a stretch of ground, over all places within half_m of the middle: by its
+ * end, and by where the disc is parallel to it. Outside the places that is at
+ * radius * slope / sqrt(1 + slope^2) from the nearest of them.
+ */
+static void raise_along(const track_t *track,
+                        double half_m,
+                        const stretch_t *stretch,
+                        double *high_m)
+{
+    const double radius_m = track->radius_m;
+    const touch_t *from = &stretch->from;
+    const touch_t *to = &stretch->to;
+    const double first_m = nav_min(from->u_m, to->u_m);
+    const double last_m = nav_max(from->u_m, to->u_m);
+    const double near_m = nav_max(nav_max(first_m, -last_m) - half_m, 0.0);
+    const double to_along_m = nav_max(fabs(to->u_m) - half_m, 0.0);
+    if (to_along_m <= radius_m)
+    {
+        *high_m = nav_max(*high_m, to->eta_m + disc_m(radius_m, to_along_m));
+    }
+    if ((near_m < radius_m) && ((stretch->over_m + disc_m(radius_m, near_m)) > *high_m) &&
+        ((last_m - first_m) > PARALLEL))
+    {
+        const double slope = (to->eta_m - from->eta_m) / (to->u_m - from->u_m);
+        const double upright = 1.0 / sqrt(1.0 + (slope * slope));
+        const double outward_m = half_m + (radius_m * fabs(slope) * upright);
+        const double u_m = nav_clamp((slope < 0.0) ? -outward_m : outward_m, first_m, last_m);
+        const double along_m = nav_max(fabs(u_m) - half_m, 0.0);
+        const double eta_m = from->eta_m + (slope * (u_m - from->u_m)) + stretch->bulge_m;
+        *high_m = nav_max(*high_m, nav_min(eta_m, stretch->over_m) + disc_m(radius_m, along_m));
+    }
+}
+
+static double above_at(const nav_lanes_t *lanes, const line_t *line, int32_t cell)
+{
+    return (line->plane_m + (lanes->plane_minor_m * (double) cell)) -
+           (double) line->z_site_m[cell * lanes->step_minor];
+}
+
+static double between(double from, double to, double part)
+{
+    return from + (part * (to - from));
+}
+
+/** Height above the plane where a line crosses a place between cells. */
+static double above_between(const nav_lanes_t *lanes, const line_t *line, double minor)
+{
+    const int32_t cell = (int32_t) minor;
+    return between(above_at(lanes, line, cell), above_at(lanes, line, cell + 1),
+                   minor - (double) cell);
+}
+
+/** Adds a line to the profile. @return false when some of it is unknown or off the map */
+static bool add_line(const track_t *track, int32_t major, profile_t *profile)
+{
+    const nav_lanes_t *lanes = &track->ground->lanes;
+    const line_t line = line_of(track->ground, track->places, major);
+    const double left = line.minor - track->half_minor;
+    const double right = line.minor + track->half_minor;
+    const uint32_t k = profile->count;
+    bool is_known = (left >= 1.0) && (right < (double) (NAV_HEIGHTMAP_SIZE - 2));
+    if (is_known)
+    {
+        const int32_t first = (int32_t) left;
+        const int32_t last = (int32_t) right + 1;
+        const int32_t end = last + track->aside;
+        const int32_t start = first - track->aside;
+        const float *z_site_m = &line.z_site_m[start * lanes->step_minor];
+        double plane_m = line.plane_m + (lanes->plane_minor_m * (double) start);
+        double low_m =
+            nav_min(above_between(lanes, &line, left), above_between(lanes, &line, right));
+        double under_m = NAV_ETA_NONE;
+        double over_m = -NAV_ETA_NONE;
+        for (int32_t cell = start; cell <= end; cell++)
+        {
+            const double above_m = plane_m - (double) *z_site_m;
+            under_m = nav_min(under_m, above_m);
+            over_m = nav_max(over_m, above_m);
+            low_m = ((cell > first) && (cell < last)) ? nav_min(low_m, above_m) : low_m;
+            plane_m += lanes->plane_minor_m;
+            z_site_m = &z_site_m[lanes->step_minor];
+        }
+        is_known = under_m > NOTHING;
+        profile->u_m[k] = line.u_m - track->places->u_m;
+        profile->low_m[k] = low_m;
+        profile->under_m[k] = under_m;
+        profile->over_m[k] = over_m;
+    }
+    return is_known;
+}
+
+/** Takes the ground of every line that a wheel could touch: one stretch of known lines without a gap. */
+static void take_lines(const track_t *track, const nav_indices_t *majors, profile_t *profile)
+{
+    bool is_over = false;
+    profile->count = 0U;
+    profile->first = majors->first;
+    for (int32_t major = majors->first; (major <= majors->last) && !is_over; major++)
+    {
+        if (add_line(track, major, profile))
+        {
+            profile->count++;
+        }
+        else if (profile->count == 0U)
+        {
+            profile->first = major + 1;
+        }
+        else
+        {
+            is_over = true;
+        }
+    }
+}
+
+/** Where a side of the places goes through one cell of the surface, between two lines. */
+typedef struct
+{
+    uint32_t side;
+    int32_t cell;
+    double parts[2]; /* where it enters and leaves: 0 on the first line, 1 on the second */
+    double reach_m;  /* height over the ground of a hub that touches it there, at most */
+} crossing_t;
+
+/** Raises the highest hub by the ground along one side of the places within one cell of the surface:
+ * a parabola, for the surface is bilinear. */
+static void raise_in_cell(const track_t *track,
+                          const line_t lines[2],
+                          const crossing_t *crossing,
+                          double *high_m)
+{
+    const nav_ground_t *ground = track->ground;
+    const nav_lanes_t *lanes = &ground->lanes;
+    const double aside = (crossing->side == 0U) ? -track->half_minor : track->half_minor;
+    const double near_0_m = above_at(lanes, &lines[0], crossing->cell);
+    const double next_0_m = above_at(lanes, &lines[0], crossing->cell + 1);
+    const double near_1_m = above_at(lanes, &lines[1], crossing->cell);
+    const double next_1_m = above_at(lanes, &lines[1], crossing->cell + 1);
+    const double over_m = nav_max(nav_max(near_0_m, next_0_m), nav_max(near_1_m, next_1_m));
+    const double twist_m = (next_1_m - near_1_m) - (next_0_m - near_0_m);
+    const double length = crossing->parts[1] - crossing->parts[0];
+    const double bulge_m =
+        nav_max(-0.25 * lanes->minor_per_major * twist_m * length * length, 0.0) *
+        ground->cos_slope;
+    stretch_t stretch = {.bulge_m = bulge_m, .over_m = over_m * ground->cos_slope};
+    touch_t *ends[2] = {&stretch.from, &stretch.to};
+
+    if ((stretch.over_m + crossing->reach_m) > *high_m)
+    {
+        for (uint32_t end = 0U; end < 2U; end++)
+        {
+            const double part = crossing->parts[end];
+            const double off = (lines[0].minor + aside + (part * lanes->minor_per_major)) -
+                               (double) crossing->cell;
+            const double above_m =
+                between(between(near_0_m, next_0_m, off), between(near_1_m, next_1_m, off), part);
+            *ends[end] = touch_at(
+                track, lines[0].u_m + (aside * lanes->u_per_minor) + (part * lanes->u_per_major),
+                above_m);
+        }
+        raise_along(track, track->places->half_u_m, &stretch, high_m);
+    }
+}
+
+/** Raises the highest hub by the ground along one side of the places, from one line to the next; on
+ * its way the side can cross from one cell to the next. */
+static void raise_along_side(
+    const track_t *track, const line_t lines[2], double reach_m, uint32_t side, double *high_m)
+{
+    const double aside = (side == 0U) ? -track->half_minor : track->half_minor;
+    const int32_t from = (int32_t) (lines[0].minor + aside);
+    const int32_t to = (int32_t) (lines[1].minor + aside);
+    crossing_t crossing = {side, from, {0.0, 1.0}, reach_m};
+    if (from != to)
+    {
+        const int32_t border = (from < to) ? to : from;
+        crossing.parts[1] =
+            ((double) border - (lines[0].minor + aside)) / track->ground->lanes.minor_per_major;
+        raise_in_cell(track, lines, &crossing, high_m);
+        crossing.cell = to;
+        crossing.parts[0] = crossing.parts[1];
+        crossing.parts[1] = 1.0;
+    }
+    raise_in_cell(track, lines, &crossing, high_m);
+}
+
+/** The highest ground of a line between the sides of the places. */
+static double inner_high_m(const track_t *track, const line_t *line)
+{
+    const nav_lanes_t *lanes = &track->ground->lanes;
+    const double left = line->minor - track->half_minor;
+    const double right = line->minor + track->half_minor;
+    double high_m = nav_max(above_between(lanes, line, left), above_between(lanes, line, right));
+    for (int32_t cell = (int32_t) left + 1; cell <= (int32_t) right; cell++)
+    {
+        high_m = nav_max(high_m, above_at(lanes, line, cell));
+    }
+    return high_m;
+}
+
+/** Does a line have a cell between the sides? */
+static bool has_inner(const track_t *track, const line_t *line)
+{
+    return (int32_t) (line->minor - track->half_minor) <
+           (int32_t) (line->minor + track->half_minor);
+}
+
+/** Raises the highest hub by the cells between the sides, wherever along their lines they are. */
+static void raise_along_inner(const track_t *track, const line_t lines[2], double *high_m)
+{
+    if (has_inner(track, &lines[0]) || has_inner(track, &lines[1]))
+    {
+        const double half_m = track->places->half_u_m + track->half_u_m;
+        const touch_t first = touch_at(track, lines[0].u_m, inner_high_m(track, &lines[0]));
+        const touch_t last = touch_at(track, lines[1].u_m, inner_high_m(track, &lines[1]));
+        const double over_m = nav_max(first.eta_m, last.eta_m);
+        const stretch_t forward = {first, last, 0.0, over_m};
+        const stretch_t backward = {last, first, 0.0, over_m};
+        raise_along(track, half_m, &forward, high_m);
+        raise_along(track, half_m, &backward, high_m);
+    }
+}
+
+/** How high a hub can be over ground that it touches between a line and the next; negative: nowhere. */
+static double reach_between_m(const track_t *track, const profile_t *profile, uint32_t k)
+{
+    const double over_m = nav_max(profile->over_m[k], profile->over_m[k + 1U]);
+    const double under_m = nav_min(profile->under_m[k], profile->under_m[k + 1U]);
+    const double uphill_m = fabs(track->ground->forward_up) * nav_max(fabs(over_m), fabs(under_m));
+    const double u_0_m = profile->u_m[k];
+    const double u_1_m = profile->u_m[k + 1U];
+    const double near_m = ((u_0_m * u_1_m) <= 0.0) ? 0.0 : nav_min(fabs(u_0_m), fabs(u_1_m));
+    const double along_m =
+        nav_max(near_m - (track->places->half_u_m + track->half_u_m + uphill_m), 0.0);
+    return (along_m < track->radius_m) ? disc_m(track->radius_m, along_m) : -NAV_ETA_NONE;
+}
+
+/** No ground that a wheel can touch between a line and the next is higher. */
+static double over_between_m(const track_t *track, const profile_t *profile, uint32_t k)
+{
+    return nav_max(profile->over_m[k], profile->over_m[k + 1U]) * track->ground->cos_slope;
+}
+
+/** Raises the highest hub by the ground between a line and the next. */
+static void raise_between(const track_t *track, int32_t major, double reach_m, double *high_m)
+{
+    const line_t lines[2] = {line_of(track->ground, track->places, major),
+                             line_of(track->ground, track->places, major + 1)};
+    raise_along_side(track, lines, reach_m, 0U, high_m);
+    raise_along_side(track, lines, reach_m, 1U, high_m);
+    raise_along_inner(track, lines, high_m);
+}
+
+/** Highest hub over all places: looks closely first where the hub could be highest. */
+static double hub_high_m(const track_t *track, const profile_t *profile)
+{
+    double reach_m[LINES_MAX];
+    double high_m = -NAV_ETA_NONE;
+    double ceiling_max_m = -NAV_ETA_NONE;
+    uint32_t best = 0U;
+    for (uint32_t k = 0U; (k + 1U) < profile->count; k++)
+    {
+        reach_m[k] = reach_between_m(track, profile, k);
+        const double ceiling_m = over_between_m(track, profile, k) + reach_m[k];
+        best = (ceiling_m > ceiling_max_m) ? k : best;
+        ceiling_max_m = nav_max(ceiling_max_m, ceiling_m);
+    }
+    if (profile->count > 1U)
+    {
+        raise_between(track, profile->first + (int32_t) best, reach_m[best], &high_m);
+    }
+    for (uint32_t k = 0U; (k + 1U) < profile->count; k++)
+    {
+        if ((k != best) && ((over_between_m(track, profile, k) + reach_m[k]) > high_m))
+        {
+            raise_between(track, profile->first + (int32_t) k, reach_m[k], &high_m);
+        }
+    }
+    return high_m;
+}
+
+/** Lowest hub over a part of the places around u_m: on whatever line it stands highest at least, and
+ * not below the ground under its middle. */
+static double part_low_m(const track_t *track, const profile_t *profile, double u_m, double half_m)
+{
+    const nav_ground_t *ground = track->ground;
+    const double spacing_m = fabs(ground->lanes.u_per_major);
+    const double reach_m = half_m + track->half_u_m;
+    double standing_m = -NAV_ETA_NONE;
+    double under_m = NAV_ETA_NONE;
+    for (uint32_t k = 0U; k < profile->count; k++)
+    {
+        const double low_m = profile->low_m[k];
+        const double off_m = fabs((profile->u_m[k] + (low_m * ground->forward_up)) - u_m);
+        const double along_m = off_m + reach_m;
+        if (along_m < track->radius_m)
+        {
+            standing_m =
+                nav_max(standing_m, (low_m * ground->cos_slope) + disc_m(track->radius_m, along_m));
+        }
+        if ((off_m - reach_m) < spacing_m)
+        {
+            under_m = nav_min(under_m, profile->under_m[k]);
+        }
+    }
+    under_m = (under_m < NAV_ETA_NONE) ? (under_m * ground->cos_slope) : -NAV_ETA_NONE;
+    return nav_max(standing_m - track->radius_m, under_m);
+}
+
+/** Lowest hub over all places. */
+static double hub_low_m(const track_t *track, const profile_t *profile)
+{
+    const nav_box_t *places = track->places;
+    const uint32_t part_count = 1U + (uint32_t) (places->half_u_m / PART_HALF_M);
+    const double half_m = places->half_u_m / (double) part_count;
+    double low_m = NAV_ETA_NONE;
+    for (uint32_t part = 0U; part < part_count; part++)
+    {
+        const double u_m = (half_m * (double) ((2U * part) + 1U)) - places->half_u_m;
+        low_m = nav_min(low_m, part_low_m(track, profile, u_m, half_m));
+    }
+    return low_m;
+}
+
+/** How far from its places a wheel can touch ground within a range of heights. */
+static double touch_reach_m(const nav_ground_t *ground,
+                            const nav_interval_t *above,
+                            double radius_m)
+{
+    const double span_m = nav_min((above->high_m - above->low_m) * ground->cos_slope, radius_m);
+    const double left_m = radius_m - span_m;
+    const double uphill_m =
+        fabs(ground->forward_up) * nav_max(fabs(above->low_m), fabs(above->high_m));
+    return disc_m(radius_m, left_m) + uphill_m;
+}
+
+nav_interval_t nav_wheel_interval(const nav_ground_t *ground,
+                                  const nav_box_t *places,
+                                  const nav_interval_t *above,
+                                  double radius_m)
+{
+    const nav_lanes_t *lanes = &ground->lanes;
+    const double half_minor = places->half_v_m * fabs(lanes->minor_across);
+    const track_t track = {ground,
+                           places,
+                           radius_m,
+                           half_minor,
+                           half_minor * fabs(lanes->u_per_minor),
+                           (fabs(lanes->minor_per_major) > PARALLEL) ? 1 : 0};
+    nav_box_t touched = *places;
+    profile_t profile;
+
+    /* at least one line before and behind the middle */
+    touched.half_u_m += nav_max(touch_reach_m(ground, above, radius_m), fabs(lanes->u_per_major));
+    nav_indices_t majors = lines_across(lanes, &touched);
+    (void) cut_to_map(&majors);
+    nav_interval_t hub = {above->low_m * ground->cos_slope, above->high_m * ground->cos_slope};
+    if ((majors.last - majors.first) < (int32_t) LINES_MAX)
+    {
+        take_lines(&track, &majors, &profile);
+        const double high_m = hub_high_m(&track, &profile) - radius_m;
+        if (high_m > NOTHING)
+        {
+            hub.high_m = high_m;
+            hub.low_m = nav_min(nav_max(hub.low_m, hub_low_m(&track, &profile)), high_m);
+        }
+    }
+    return hub;
+}
