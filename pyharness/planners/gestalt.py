@@ -176,7 +176,7 @@ class Gestalt(MappedPlanner):
         spacing_m = max(SPACING_M, abs(length_m) / POSES_MAX)
         points = arc_points(Place.of(request["pose"]), length_m, heading_rad, spacing_m)
         goodness, worst = self._map.at(points)
-        if length_m == 0.0:
+        if length_m == 0.0 and heading_rad != 0.0:  # a turn; without one it is the pose itself
             goodness[:] = 1.0
         reasons = self._reasons(points, goodness, worst, mode, _zone_margin_m(request))[0]
         share = np.arange(1, len(reasons) + 1) / len(reasons)
