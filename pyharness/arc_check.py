@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from pyharness.clib import lib
 from pyharness.dp import Kind, Message, new_message
-from pyharness.dp_file import DpReader
-from pyharness.errors import RerunError
+from pyharness.dp_file import Damage, DpReader
+from pyharness.errors import HarnessError, RerunError
 from pyharness.history import History
 from pyharness.messages import Arc, Pose6, Uncertainty, cloud_requests, evaluate_request
 from pyharness.navlib import Navlib
@@ -30,11 +30,19 @@ Place = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class ArcCheck:
-    """A question and its answer, with the limits it was measured against."""
+    """A question and its answer, with the limits it was measured against.
+
+    Attributes:
+        request: To evaluate_arc.
+        answer: Of evaluate_arc.
+        params: Of Navlib, its limits among them.
+        damage: Of the file, where it ended the records before the time that was asked for.
+    """
 
     request: Message
     answer: Message
     params: dict[str, float]
+    damage: Damage | None = None
 
     @property
     def is_safe(self) -> bool:
@@ -58,34 +66,38 @@ def check_on_drive(
     with DpReader(path) as reader:
         history = History(reader.schema, reader.info)
         feeder = Feeder(reader.schema, Enav, lambda *_: None)
+        now_s = time_s or 0.0
         for record in unbroken(reader.records()):
             if time_s is not None and record.time_s > time_s:
                 break
             take(history, record, path)
+            now_s = max(now_s, record.time_s)
             if record.kind != Kind.EVALUATE_ARC_IN:  # asks the same, changes nothing
                 feeder.feed(record)
+        damage = reader.damage
     if feeder.planner is None or history.analysis is None or not history.estimates:
-        raise RerunError(f"{path}: no terrain had been analyzed yet at {time_s or 0.0:g} s")
+        when = "" if time_s is None else f" at {time_s:g} s"
+        raise RerunError(f"{path}: no terrain had been analyzed yet{when}")
     estimate = history.estimates[-1]
     believed, doubt = estimate["pose"], estimate["uncertainty"]
     north_m, east_m, yaw_rad = place or (
         float(believed[name]) for name in ("x_site_m", "y_site_m", "yaw_rad")
     )
     request = evaluate_request(
-        max(float(estimate["time_s"]), time_s or 0.0),
+        now_s,
         Pose6(north_m, east_m, float(believed["z_site_m"]), 0.0, 0.0, yaw_rad),
         Uncertainty(*(float(doubt[name]) for name in doubt.dtype.names or ())),
         arc,
         MODE,
     )
-    return _answered(request, feeder.planner.evaluate_arc(request), history.params)
+    return _answered(request, feeder.planner.evaluate_arc(request), history.params, damage)
 
 
 def check_on_terrain(terrain: Terrain, arc: Arc, place: Place) -> ArcCheck:
     """Ask Navlib with perfect knowledge of the terrain and of the pose."""
     north_m, east_m, yaw_rad = place
     if not terrain.contains(north_m, east_m):
-        raise RerunError(f"--pose: {north_m:g}, {east_m:g} is not on the terrain")
+        raise HarnessError(f"--pose: {north_m:g}, {east_m:g} is not on the terrain")
     params = param_values({})
     navlib = Navlib(params)
     stands = Pose6(north_m, east_m, float(terrain.height_at(north_m, east_m)), 0.0, 0.0, 0.0)
@@ -112,10 +124,12 @@ def _known_points(terrain: Terrain, center: Pose6, cell_m: float) -> npt.NDArray
     return points[np.isfinite(z)].astype(np.float32)
 
 
-def _answered(request: Message, answer: Message, params: dict[str, float]) -> ArcCheck:
+def _answered(
+    request: Message, answer: Message, params: dict[str, float], damage: Damage | None = None
+) -> ArcCheck:
     if answer["status"] != Status.OK:
-        raise RerunError(f"evaluate_arc: {status_text(int(answer['status']))}")
-    return ArcCheck(request, answer, params)
+        raise HarnessError(f"evaluate_arc: {status_text(int(answer['status']))}")
+    return ArcCheck(request, answer, params, damage)
 
 
 # ------------------------------------------------------------------ showing

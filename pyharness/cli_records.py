@@ -26,7 +26,12 @@ FILE = click.Path(path_type=Path)
 @click.command("replay")
 @click.argument("file", type=FILE)
 @click.option("--speed", type=float, help="Times simulated time (as fast as it goes).")
-@click.option("--from-cycle", type=int, default=1, help="Show from this planning cycle on (1).")
+@click.option(
+    "--from-cycle",
+    type=click.IntRange(min=1),
+    default=1,
+    help="Show from this planning cycle on (1).",
+)
 @click.option("--rerun", is_flag=True, help="Feed the inputs to the planner again and compare.")
 @click.option(
     "--set", "settings", type=Assignment(), multiple=True,
@@ -60,8 +65,10 @@ def replay_command(
         raise HarnessError("--export: expected -o FOLDER as well")
     if style is not None and rerun:
         raise HarnessError("--export: give it without --rerun, for the file that -o of that wrote")
+    if (speed is not None or from_cycle > 1) and (rerun or style is not None):
+        raise HarnessError("--speed and --from-cycle: give them without --rerun and --export")
     if out is not None:
-        _check_out(out, force)
+        _check_out(out, file, force)
     from pyharness.replay import makes_sense
 
     try:
@@ -74,12 +81,14 @@ def replay_command(
                 return _rerun(file, out)
             return _replay(file, speed, from_cycle, out)
     except OSError as error:
-        raise OutputError(f"{error.filename or out}: {error.strerror}") from error
+        raise OutputError(f"{error.filename or out}: {error.strerror or error}") from error
 
 
-def _check_out(out: Path, force: bool) -> None:
+def _check_out(out: Path, file: Path, force: bool) -> None:
     if out.exists() and not out.is_dir():
         raise OutputError(f"{out}: exists and is no folder")
+    if out.resolve() == file.resolve().parent:
+        raise OutputError(f"{out}: {file.name} lies there, expected another folder")
     if out.is_dir() and any(out.iterdir()) and not force:
         raise OutputError(f"{out}: is not empty (--force writes into it all the same)")
 
@@ -112,6 +121,8 @@ def _replay(file: Path, speed: float | None, from_cycle: int, out: Path | None) 
 
 
 def _rerun(file: Path, out: Path | None) -> int:
+    from contextlib import closing
+
     from pyharness.dp_file import DpReader
     from pyharness.planners import load_planner
     from pyharness.rerun import compare, unbroken
@@ -119,8 +130,9 @@ def _rerun(file: Path, out: Path | None) -> int:
     if out is not None:
         raise HarnessError("-o: a re-run that changes nothing has nothing to write")
     with DpReader(file) as reader:
-        records = unbroken(_with_progress(reader))
-        comparison = compare(records, reader.schema, load_planner(reader.info.planner))
+        planner_class = load_planner(reader.info.planner)
+        with closing(unbroken(_with_progress(reader))) as records:
+            comparison = compare(records, reader.schema, planner_class)
         done = f"{comparison.call_count} calls, {comparison.record_count} records"
         if comparison.difference is not None:
             click.echo(f"{done} identical, then differs: {comparison.difference}")
@@ -269,4 +281,4 @@ def evaluate_arc_command(
     else:
         check = check_on_terrain(read_terrain(file), asked, place)
     click.echo(check_text(check), nl=False)
-    return 0
+    return _report(file, check.damage)

@@ -2,7 +2,7 @@
 """Re-run: the recorded inputs go to a planner once more, and its outputs are compared."""
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -38,7 +38,7 @@ def is_of_planner(record: Record) -> bool:
     return 0 < record.kind <= int(lib.NAV_DP_COUNT)
 
 
-def unbroken(records: Iterable[Record]) -> Iterator[Record]:
+def unbroken(records: Iterable[Record]) -> Generator[Record]:
     """Yield records until one is missing: what comes behind a gap cannot be run again."""
     for index, record in enumerate(records):
         if record.sequence != index:

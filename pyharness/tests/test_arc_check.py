@@ -7,7 +7,7 @@ import pytest
 from pyharness.arc_check import check_on_drive, check_on_terrain, check_text
 from pyharness.dp import Kind
 from pyharness.dp_file import DpReader
-from pyharness.errors import RerunError
+from pyharness.errors import HarnessError, RerunError
 from pyharness.messages import Arc
 from sim.terrain import Terrain
 
@@ -52,7 +52,7 @@ def test_a_turn_in_place_is_judged_by_its_angle():
 def test_ground_outside_the_terrain_is_unknown():
     check = check_on_terrain(flat(), Arc(5.0, 0.0), (16.0, 0.0, 0.0))
     assert "UNKNOWN" in check_text(check)
-    with pytest.raises(RerunError, match="not on the terrain"):
+    with pytest.raises(HarnessError, match="not on the terrain"):
         check_on_terrain(flat(), AHEAD, (30.0, 0.0, 0.0))
 
 

@@ -107,6 +107,10 @@ def test_of_a_damaged_file_the_intact_part_is_used_and_the_exit_code_is_2(enav, 
         assert out
         assert len(err.splitlines()) == 1
         assert err.startswith("enav: drive.dp: damaged at byte ")
+    code, out, err = enav("evaluate-arc", "drive.dp", "--arc", "1,0")
+    assert (code, len(err.splitlines())) == (2, 1)
+    assert "margin" in out
+    assert enav("evaluate-arc", "drive.dp", "--arc", "1,0", "--time", "150")[0] == 0
     code, out, _ = enav("replay", "drive.dp", "-o", "metrics")
     assert code == 2
     assert (tmp_path / "metrics/metrics.csv").exists()
@@ -126,6 +130,9 @@ def test_of_a_damaged_file_the_intact_part_is_used_and_the_exit_code_is_2(enav, 
         (["replay", "drive.dp", "--rerun", "--set", "seed=1"], "--set seed: expected navlib.NAME"),
         (["replay", "drive.dp", "--export", "csv"], "expected -o"),
         (["replay", "drive.dp", "--rerun", "-o", "x"], "nothing to write"),
+        (["replay", "drive.dp", "--rerun", "--speed", "2"], "without --rerun"),
+        (["replay", "drive.dp", "--from-cycle", "0"], "--from-cycle"),
+        (["replay", "drive.dp", "-o", ".", "--force"], "drive.dp lies there"),
         (["replay", "drive.dp", "-o", "mine.txt"], "mine.txt: exists and is no folder"),
         (["replay", "drive.dp", "-o", "mine.txt/in"], "mine.txt/in: Not a directory"),
         (["evaluate-arc", "drive.dp", "--arc", "1"], "expected LENGTH_M,HEADING_DEG"),
