@@ -102,6 +102,10 @@ bench: $(SETUP)-bench ## set up and measure speed: a table, and build/bench.json
 	@mkdir -p build
 	@$(BIN)/python -m pyharness.bench
 
+.PHONY: drive-rate
+drive-rate: $(SETUP) ## thinking while driving against stopping to think: m/h on 20 terrains
+	@$(BIN)/python -m pyharness.drive_rate --workers $(JOBS)
+
 .PHONY: coverage
 coverage: $(SETUP) ## coverage of Navlib by its C tests alone: build/coverage/report/index.html
 	@find build -path 'build/coverage/*.gcda' -delete 2>/dev/null || true
@@ -113,7 +117,7 @@ coverage: $(SETUP) ## coverage of Navlib by its C tests alone: build/coverage/re
 	    --least-line-percent $(LEAST_LINE_PERCENT) --least-branch-percent $(LEAST_BRANCH_PERCENT)
 
 .PHONY: verify
-verify: test lint coverage records ace-guarantee ## everything that is checked, and ACE against a million poses
+verify: test lint coverage records ace-guarantee koz-guarantee ## everything that is checked, and ACE against a million poses
 
 .PHONY: golden
 golden: $(SETUP) ## record the golden drive of a PowerPC again (needs its compiler and qemu)
@@ -138,6 +142,10 @@ ace-guarantee: $(SETUP) ## settle a million random poses, and search for ground 
 	@mkdir -p build
 	@$(BIN)/python -m pyharness.tests.verify_ace --poses $(POSES) --workers $(JOBS)
 	@$(BIN)/python -m pyharness.tests.search_ace --seconds $(SEARCH_S) --workers $(JOBS)
+
+.PHONY: koz-guarantee
+koz-guarantee: $(SETUP) ## a hundred drives round a keep-out zone with bad localisation
+	@$(BIN)/python -m pytest --quiet -m verify pyharness/tests/test_koz_growth.py
 
 .PHONY: docs
 docs: $(SETUP) ## write the pages of docs/ that are made from the C tables

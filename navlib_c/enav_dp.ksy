@@ -40,6 +40,7 @@ enums:
     32: truth
     33: estimate
     34: timeline
+    35: host_evr
 types:
   body:
     meta:
@@ -114,6 +115,7 @@ types:
                 dp_kind::truth: nav_host_truth_t
                 dp_kind::estimate: nav_host_estimate_t
                 dp_kind::timeline: nav_host_timeline_t
+                dp_kind::host_evr: nav_evr_t
           - id: padding
             size: (8 - payload_size % 8) % 8
       end_t:

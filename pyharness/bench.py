@@ -22,8 +22,10 @@ import numpy.typing as npt
 
 from pyharness import messages
 from pyharness.clib import ffi, lib
+from pyharness.dp import Message
 from pyharness.drive import drive
 from pyharness.history import History
+from pyharness.layout import dtype_of
 from pyharness.messages import Arc, Pose6, Uncertainty
 from pyharness.navlib import Navlib
 from pyharness.planners.enav import Enav
@@ -37,6 +39,7 @@ from pyharness.scenario import (
 )
 from sim.camera import CameraConfig, camera_pair
 from sim.frames import rotation
+from sim.generate import TerrainRecipe, generate
 from sim.raycast import RayCaster
 from sim.settle import Settler
 from sim.terrain import Terrain
@@ -51,8 +54,11 @@ GOAL = Waypoint(40.0, 0.0, 2.0, "avoid_all")
 CERTAIN = Uncertainty(0.03, 0.005, 0.1)
 OUTPUT = Path("build/bench.json")
 
+# The least that any merging must do. `bin_site` is given points that stand in the map's frame
+# already; `bin_rover` is given what Navlib is given. Neither checks its input, knows a map that
+# rolls, tells images apart or copies data products.
 BINNING_C = """
-void bin(const float *points, int count, float *sum, int *hits)
+void bin_site(const float *points, int count, double *sum, int *hits)
 {
     for (int i = 0; i < count; ++i)
     {
@@ -65,6 +71,25 @@ void bin(const float *points, int count, float *sum, int *hits)
         }
     }
 }
+void bin_rover(const float *points, int count, const double *to, double *sum, int *hits)
+{
+    for (int i = 0; i < count; ++i)
+    {
+        const double x = points[3 * i], y = points[3 * i + 1], z = points[3 * i + 2];
+        const double row = to[0] * x + to[1] * y + to[2] * z + to[3];
+        const double col = to[4] * x + to[5] * y + to[6] * z + to[7];
+        if ((row >= 0.0) && (row < 300.0) && (col >= 0.0) && (col < 300.0))
+        {
+            const int cell = 300 * (int) row + (int) col;
+            sum[cell] += to[8] * x + to[9] * y + to[10] * z + to[11];
+            hits[cell] += 1;
+        }
+    }
+}
+"""
+BINNING_CDEF = """
+void bin_site(const float *points, int count, double *sum, int *hits);
+void bin_rover(const float *points, int count, const double *to, double *sum, int *hits);
 """
 
 
@@ -110,39 +135,74 @@ class Bench:
     def mapped(self) -> tuple[Navlib, Pose6]:
         """Return Navlib with a map of the ground under and around the rover, and where that is."""
         navlib = Navlib(navlib_params(self.scenario))
-        for image_id, north_m in enumerate((-44.0, -42.0, -40.0, -38.0, -36.0), start=1):
-            world = World(self.terrain, self.vehicle, start=(north_m, 0.0, 0.0))
-            pose = messages.copy_pose(world.truth)
-            for request in messages.cloud_requests(0.0, pose, image_id, world.image()):
+        images = self.images(start_m=-44.0, count=5, step_m=2.0)
+        for _, requests in images:
+            for request in requests:
                 navlib.process_disparity(request)
-        return navlib, pose
+        return navlib, images[-1][0]
+
+    def images(
+        self, start_m: float = -44.0, count: int = 8, step_m: float = 1.0
+    ) -> list[tuple[Pose6, list[Message]]]:
+        """Return clouds taken on the way north, in chunks, with the poses of their imaging."""
+        found = []
+        for index in range(count):
+            world = World(self.terrain, self.vehicle, start=(start_m + step_m * index, 0.0, 0.0))
+            pose = messages.copy_pose(world.truth)
+            requests = list(messages.cloud_requests(0.0, pose, index + 1, world.image()))
+            found.append((pose, requests))
+        return found
 
 
-def bench_process_disparity(bench: Bench) -> Result:
-    """Merge a cloud; the reference only bins it."""
+def bench_process_disparity(bench: Bench) -> Iterator[Result]:
+    """Merge a cloud in chunks, as C calls of Navlib that send their data products to the stubs.
+
+    The rows after the first tell what else could be counted: a reference that need not turn the
+    points, what the stubs' copies of the data products take, the calls from Python.
+    """
     rng = np.random.default_rng(1)
     points_m = rng.uniform((-15, -15, -1), (15, 15, 1), (POINTS, 3)).astype(np.float32)
     level = Pose6(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     requests = [
         list(messages.cloud_requests(0.0, level, image_id, points_m))
-        for image_id in range(1, REPEATS + 1)
+        for image_id in range(1, 3 * REPEATS + 1)
     ]
     navlib = Navlib(navlib_params(bench.scenario))
-    images = iter(requests)
+    answer = ffi.new("nav_process_disparity_out_t *")
+    in_c = [
+        [ffi.from_buffer("nav_process_disparity_in_t *", request) for request in image]
+        for image in requests
+    ]
+    images, images_python = iter(in_c[: 2 * REPEATS]), iter(requests[2 * REPEATS :])
 
     def merge() -> None:
-        for request in next(images):
-            navlib.process_disparity(request)
+        for chunk in next(images):
+            lib.nav_process_disparity(navlib.context, chunk, answer)
             lib.nav_stub_clear()
 
-    value_s = best_of(merge)
-    return compared(
-        "process_disparity", 1e3 * value_s, "ms", "plain C binning", _binning_ms(points_m + 15)
-    )
+    def merge_python() -> None:
+        for request in next(images_python):
+            navlib.process_disparity(request)
+            for _ in navlib.drain():
+                pass
+
+    def send() -> None:
+        for request, chunk in zip(requests[0], in_c[0], strict=True):
+            used = request.nbytes - 12 * (lib.NAV_CHUNK_POINTS_MAX - int(request["point_count"]))
+            lib.nav_dp_send(lib.NAV_DP_PROCESS_DISPARITY_IN, 0.0, chunk, used)
+            lib.nav_stub_clear()
+
+    value_ms = 1e3 * best_of(merge, 2 * REPEATS)
+    site_ms, rover_ms = _binning_ms(points_m) or (None, None)
+    name = "process_disparity"
+    yield compared(name, value_ms, "ms", "C loop: turn and bin", rover_ms)
+    yield compared(f"{name}_floor", value_ms, "ms", "C loop: bin turned points", site_ms)
+    yield Result(f"{name}_copies", 1e3 * best_of(send, REPEATS), "ms")
+    yield Result(f"{name}_python", 1e3 * best_of(merge_python, REPEATS), "ms")
 
 
-def _binning_ms(points_m: npt.NDArray[np.float32]) -> float | None:
-    """Compile and time the loop that any such function must at least run."""
+def _binning_ms(points_m: npt.NDArray[np.float32]) -> tuple[float, float] | None:
+    """Compile and time the two loops."""
     from cffi import FFI
 
     with tempfile.TemporaryDirectory() as folder:
@@ -152,28 +212,43 @@ def _binning_ms(points_m: npt.NDArray[np.float32]) -> float | None:
         if subprocess.run(command, check=False).returncode != 0:
             return None
         plain: Any = FFI()
-        plain.cdef("void bin(const float *points, int count, float *sum, int *hits);")
-        function = plain.dlopen(str(library)).bin
-        total, hits = np.zeros(90_000, np.float32), np.zeros(90_000, np.int32)
-        arguments = (
-            plain.from_buffer("float[]", points_m),
-            len(points_m),
-            plain.from_buffer("float[]", total),
-            plain.from_buffer("int[]", hits),
+        plain.cdef(BINNING_CDEF)
+        loops = plain.dlopen(str(library))
+        points = plain.from_buffer("float[]", points_m)
+        moved = plain.from_buffer("float[]", points_m + np.float32(15.0))
+        sums = plain.from_buffer("double[]", np.zeros(90_000))
+        hits = plain.from_buffer("int[]", np.zeros(90_000, np.int32))
+        to = plain.from_buffer(
+            "double[]", np.array([10.0, 0, 0, 150, 0, 10.0, 0, 150, 0, 0, 1.0, 0])
         )
-        return 1e3 * best_of(lambda: function(*arguments))
+        count = len(points_m)
+        site_s = best_of(lambda: loops.bin_site(moved, count, sums, hits), 2 * REPEATS)
+        rover_s = best_of(lambda: loops.bin_rover(points, count, to, sums, hits), 2 * REPEATS)
+        return 1e3 * site_s, 1e3 * rover_s
 
 
-def bench_analyze_terrain(bench: Bench) -> Result:
-    """Compute the costmap; the reference sums the boxes that plane fits need."""
+def bench_analyze_terrain(bench: Bench) -> Iterator[Result]:
+    """Compute surface and costmap; the reference sums the boxes that plane fits need.
+
+    Dijkstra is no part of it: select_arc plans. The reference does not fit the planes, close gaps
+    or move the map. First what a drive asks for, a new cloud a metre further on; then all anew.
+    """
     from scipy.ndimage import uniform_filter
 
-    navlib, pose = bench.mapped()
-    request = messages.analyze_request(0.0, pose, GOAL, 0.1)
-
-    def analyze() -> None:
-        navlib.analyze_terrain(request)
-        lib.nav_stub_clear()
+    drive_images = bench.images()
+    navlib = Navlib(navlib_params(bench.scenario))
+    typical_s, full_s = math.inf, math.inf
+    for _ in range(REPEATS):
+        navlib = Navlib(navlib_params(bench.scenario))
+        for index, (pose, requests) in enumerate(drive_images):
+            for request in requests:
+                navlib.process_disparity(request)
+            duration_s = _analysis_s(navlib, pose)
+            typical_s = min(typical_s, duration_s) if index > 0 else typical_s
+        for state in ("surface_state", "costmap_state"):
+            ffi.memmove(ffi.addressof(navlib.context, state), *_zeros(navlib.context, state))
+        full_s = min(full_s, _analysis_s(navlib, drive_images[-1][0]))
+    nothing_s = min(_analysis_s(navlib, drive_images[-1][0]) for _ in range(REPEATS))
 
     z_m = np.random.default_rng(1).normal(size=(300, 300))
     axis_m = np.arange(300) * 0.1
@@ -183,40 +258,95 @@ def bench_analyze_terrain(bench: Bench) -> Result:
         for moment in moments:
             uniform_filter(moment, 25)[::5, ::5].copy()
 
-    value_ms, reference_ms = 1e3 * best_of(analyze), 1e3 * best_of(boxes)
-    return compared("analyze_terrain", value_ms, "ms", "scipy box sums", reference_ms)
+    reference_ms = 1e3 * best_of(boxes)
+    for name, value_s in (
+        ("analyze_terrain", typical_s),
+        ("analyze_terrain_all", full_s),
+        ("analyze_terrain_idle", nothing_s),
+    ):
+        yield compared(name, 1e3 * value_s, "ms", "scipy box sums", reference_ms)
+
+
+def _zeros(context: Any, member: str) -> tuple[bytes, int]:
+    size = ffi.sizeof(getattr(context, member))
+    return bytes(size), size
+
+
+def _analysis_s(navlib: Navlib, pose: Pose6) -> float:
+    return _call_s(navlib, "analyze_terrain", messages.analyze_request(0.0, pose, GOAL, 0.1))
+
+
+def _call_s(navlib: Navlib, name: str, request: Message) -> float:
+    """Time a C call."""
+    function = getattr(lib, f"nav_{name}")
+    request_c = ffi.from_buffer(f"nav_{name}_in_t *", request)
+    answer = ffi.new(f"nav_{name}_out_t *")
+    lib.nav_stub_clear()
+    start_s = time.perf_counter()
+    function(navlib.context, request_c, answer)
+    duration_s = time.perf_counter() - start_s
+    lib.nav_stub_clear()
+    return duration_s
+
+
+def bench_cycle_share(bench: Bench) -> Iterator[Result]:
+    """Share of each call in cycles of a drive over CFA 10 %: a 320 x 240 cloud, analyze, select."""
+    recipe = TerrainRecipe(size_m=60.0, cfa=0.10, seed=1)
+    rocky = Bench(bench.scenario, generate(recipe), bench.vehicle)
+    navlib = Navlib(navlib_params(bench.scenario))
+    spent_s = {"process_disparity": 0.0, "analyze_terrain": 0.0, "select_arc": 0.0}
+    cycles = rocky.images(start_m=-5.0, count=8)
+
+    for index, (pose, requests) in enumerate(cycles):
+        calls = [("process_disparity", request) for request in requests]
+        calls += [
+            ("analyze_terrain", messages.analyze_request(0.0, pose, GOAL, 0.1)),
+            ("select_arc", messages.select_request(0.0, pose, CERTAIN, GOAL, Arc(1.0, 0.0))),
+        ]
+        for name, request in calls:
+            duration_s = _call_s(navlib, name, request)
+            spent_s[name] += duration_s if index > 0 else 0.0  # the first has no map yet
+    total_s = sum(spent_s.values())
+    yield Result("cycle", 1e3 * total_s / (len(cycles) - 1), "ms")
+    for name, value_s in spent_s.items():
+        yield Result(f"cycle_share_{name}", 100.0 * value_s / total_s, "%")
 
 
 def bench_dijkstra(bench: Bench) -> Result:
-    """Compute the cost-to-go of every costmap cell."""
+    """Compute the cost-to-go of every costmap cell; the reference finds the same costs."""
     navlib, pose = bench.mapped()
     navlib.analyze_terrain(messages.analyze_request(0.0, pose, GOAL, 0.1))
     lib.nav_stub_clear()
     ctx = navlib.context
+    cells = np.frombuffer(ffi.buffer(ctx.costmap.cells), dtype_of("nav_cost_cell_t"))
+    cells["terrain_reason"] = 0
+    cells["cost_s_per_m"] = np.random.default_rng(1).uniform(20.0, 60.0, len(cells))
     goal = ffi.new(
         "nav_waydisc_t *", {"x_site_m": -20.0, "y_site_m": 0.0, "radius_m": GOAL.radius_m}
     )
+    costmap, planner = ffi.addressof(ctx, "costmap"), ffi.addressof(ctx, "global")
 
     def plan() -> None:
-        lib.nav_global_plan(
-            ffi.addressof(ctx, "global"),
-            ffi.addressof(ctx, "costmap"),
-            ffi.addressof(ctx, "params"),
-            goal,
-            True,
-            True,
-        )
+        lib.nav_global_plan(planner, costmap, ffi.addressof(ctx, "params"), goal, True, True)
 
-    return compared("dijkstra", 1e3 * best_of(plan), "ms", "skimage MCP_Geometric", _mcp_ms())
+    value_ms = 1e3 * best_of(plan)
+    found_s = np.frombuffer(ffi.buffer(planner.cost_to_go_s), np.float64)
+    side = lib.NAV_COSTMAP_SIZE
+    found_s = found_s.reshape(side + 2, side + 2)[1:-1, 1:-1]
+    costs_s = cells["cost_s_per_m"].reshape(side, side).astype(np.float64) * ctx.costmap.cell_m
+    return compared("dijkstra", value_ms, "ms", "skimage MCP_Geometric", _mcp_ms(costs_s, found_s))
 
 
-def _mcp_ms() -> float | None:
+def _mcp_ms(costs_s: npt.NDArray[np.float64], expected_s: npt.NDArray[np.float64]) -> float | None:
+    """Time the reference from the same cells; it must find the same costs."""
     try:
         from skimage.graph import MCP_Geometric  # type: ignore[import-not-found,unused-ignore]
     except ImportError:
         return None
-    costs = np.random.default_rng(1).uniform(20.0, 60.0, (100, 100))
-    return 1e3 * best_of(lambda: MCP_Geometric(costs).find_costs([(50, 80)]))
+    starts = np.argwhere(expected_s == 0.0)
+    found_s, _ = MCP_Geometric(costs_s).find_costs(starts)
+    assert np.allclose(found_s, expected_s, rtol=1e-9), "Dijkstra and its reference disagree"
+    return 1e3 * best_of(lambda: MCP_Geometric(costs_s).find_costs(starts))
 
 
 def bench_select_arc(bench: Bench) -> Result:
@@ -232,20 +362,17 @@ def bench_select_arc(bench: Bench) -> Result:
     return Result("select_arc", 1e3 * best_of(select), "ms")
 
 
-def bench_settle_warm(bench: Bench) -> Result:
-    """Settle along a curved 20 m drive at 8 Hz; the reference solves the linkage alone."""
+def bench_settle_warm(bench: Bench) -> Iterator[Result]:
+    """Settle along 20 m at 8 Hz; the reference solves the linkage alone."""
     settler = Settler(bench.terrain, bench.vehicle)
     along_m = np.arange(0.0, 20.0, STEP_M)
-    yaw_rad = 0.1 * along_m
-    poses = np.column_stack(
-        [
-            np.cumsum(np.cos(yaw_rad)) * STEP_M - 5.0,
-            np.cumsum(np.sin(yaw_rad)) * STEP_M,
-            yaw_rad,
-        ]
-    )
-    value_s = best_of(lambda: settler.settle_many(poses, chained=True))
-    return compared("settle_warm", 1e6 * value_s / len(poses), "us", "scipy root", _root_us(bench))
+    reference_us = _root_us(bench)
+    for name, curvature_1_m in (("settle_warm", 0.0), ("settle_warm_curve", 0.1)):
+        yaw_rad = curvature_1_m * along_m
+        north_m, east_m = (np.cumsum(turn(yaw_rad)) * STEP_M for turn in (np.cos, np.sin))
+        poses = np.column_stack([north_m - 5.0, east_m, yaw_rad])
+        value_s = best_of(partial(settler.settle_many, poses, chained=True))
+        yield compared(name, 1e6 * value_s / len(poses), "us", "scipy root", reference_us)
 
 
 def bench_world_step(bench: Bench) -> Result:
@@ -373,11 +500,12 @@ def main() -> None:
     assert isinstance(vehicle, Vehicle)
     bench = Bench(scenario, make_terrain(scenario), vehicle)
     results = [
-        bench_process_disparity(bench),
-        bench_analyze_terrain(bench),
+        *bench_process_disparity(bench),
+        *bench_analyze_terrain(bench),
         bench_dijkstra(bench),
         bench_select_arc(bench),
-        bench_settle_warm(bench),
+        *bench_cycle_share(bench),
+        *bench_settle_warm(bench),
         bench_world_step(bench),
         *bench_raycast(bench),
         *bench_drive_80m(bench),
@@ -391,7 +519,7 @@ def main() -> None:
 
 
 def _line(result: Result) -> str:
-    text = f"{result.name:<20} {result.value:10.3f} {result.unit:<12}"
+    text = f"{result.name:<30} {result.value:10.3f} {result.unit:<12}"
     if result.reference_value is None or result.ratio is None:
         return text.rstrip() + "\n"
     return f"{text} {result.reference_value:10.3f} {result.reference}, ratio {result.ratio:.3f}\n"

@@ -6,12 +6,14 @@ Exit codes: 0 done or goal reached, 2 bad input, 3 the drive ended in a fault, 4
 """
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from pyharness.cli_modes import modes_command
 from pyharness.cli_records import evaluate_arc_command, replay_command
 from pyharness.cli_sim import stereo_noise
 from pyharness.cli_terrain import terrain
@@ -20,6 +22,7 @@ from pyharness.errors import HarnessError
 from sim.errors import SimError
 
 if TYPE_CHECKING:
+    from pyharness.command_server import CommandServer
     from pyharness.drive_folder import Progress
 
 EXIT_BAD_INPUT = 2
@@ -59,6 +62,7 @@ def _fail(message: str) -> int:
 
 
 cli.add_command(terrain)
+cli.add_command(modes_command)
 terrain.add_command(stereo_noise)
 cli.add_command(replay_command)
 cli.add_command(evaluate_arc_command)
@@ -77,18 +81,21 @@ cli.add_command(evaluate_arc_command)
 @click.option("--set", "settings", type=Assignment(), multiple=True, help="Scenario key = value.")
 @click.option("--seed", type=int, help="Of terrain and noise.")
 @click.option("--timeline", type=click.Path(path_type=Path), help="Draw who worked when, as PNG.")
+@click.option("--port", type=click.IntRange(0, 65535), help="Serve the command socket; 0: any.")
 @click.option("--force", is_flag=True, help="Replace a finished drive.")
 @click.option("-o", "out", type=click.Path(path_type=Path), help="Folder (drives/NAME-SEED).")
 def drive_command(
     scenario_file: Path | None,
     settings: tuple[tuple[str, str], ...],
     timeline: Path | None,
+    port: int | None,
     force: bool,
     out: Path | None,
     **options: Any,
 ) -> int:
     """Run one drive; without arguments the demonstration drive."""
     from pyharness.drive_folder import check_folder, partial_folder, run_drive
+    from pyharness.records import Outcome
     from pyharness.scenario import check_places, load_scenario, make_terrain
     from sim.errors import ConfigError
 
@@ -102,8 +109,8 @@ def drive_command(
     except ConfigError as error:
         raise as_options(error, options) from None
     try:
-        with _ProgressBar() as bar:
-            summary = run_drive(scenario, ground, folder, force, bar.show)
+        with _command_server(port) as server, _ProgressBar() as bar:
+            summary = run_drive(scenario, ground, folder, force, bar.show, server)
     except KeyboardInterrupt:
         click.echo(f"enav: what was recorded so far is in {partial_folder(folder)}", err=True)
         raise
@@ -113,7 +120,23 @@ def drive_command(
         draw_timeline_of(folder / "drive.dp", timeline)
     click.echo(_outcome_text(summary))
     click.echo(f"{folder}")
-    return 0 if summary["outcome"] == "goal_reached" else EXIT_FAULT
+    return 0 if Outcome(summary["outcome"]).is_reached else EXIT_FAULT
+
+
+@contextmanager
+def _command_server(port: int | None) -> "Iterator[CommandServer | None]":
+    """Listen while a drive runs, where a port is given."""
+    if port is None:
+        yield None
+        return
+    from pyharness.command_server import HOST, CommandServer
+
+    server = CommandServer(port)
+    click.echo(f"enav: {HOST}:{server.port} waits for a client to say run", err=True)
+    try:
+        yield server
+    finally:
+        server.close()
 
 
 def _scenario_overrides(options: Mapping[str, Any]) -> dict[str, object]:

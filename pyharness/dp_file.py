@@ -37,6 +37,8 @@ ALIGNMENT_BYTES = 8
 SCHEMA_SIZE_MAX_BYTES = 1 << 20
 END_SIZE_MAX_BYTES = 1 << 16
 SEARCH_BLOCK_BYTES = 1 << 20
+FLUSHED_KINDS = frozenset({Kind.SELECT_ARC_OUT, Kind.HOST_EVR})
+"""What ends a planning cycle, and what the executive reports."""
 
 _FILE_HEADER = "8s4I"  # magic, byte-order mark, format version, content version, schema size
 _RECORD_HEADER = "4Id"  # sync, kind, payload size, sequence, time
@@ -53,9 +55,9 @@ def _padding(size_bytes: int) -> int:
 # ------------------------------------------------------------------ the description in the header
 
 
-def _describe(schema: Schema, info: DriveInfo) -> bytes:
-    """Return the JSON text of a header, to a multiple of the alignment."""
-    data = {
+def description(schema: Schema, info: DriveInfo) -> dict[str, Any]:
+    """Return, as plain data, what the records of a drive look like and what drive it is."""
+    return {
         "drive": asdict(info),
         "enums": schema.enums,
         "events": [asdict(item) for item in schema.events.values()],
@@ -63,6 +65,11 @@ def _describe(schema: Schema, info: DriveInfo) -> bytes:
         "parameters": schema.parameters,
         "records": [asdict(item) for item in schema.records.values()],
     }
+
+
+def _describe(schema: Schema, info: DriveInfo) -> bytes:
+    """Return the JSON text of a header, to a multiple of the alignment."""
+    data = description(schema, info)
     text = json.dumps(data, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode()
     return text + b" " * _padding(len(text))
 
@@ -119,7 +126,7 @@ class DpWriter:
         self._file.write(head + text + check)
 
     def write(self, record: Record) -> None:
-        """Append one record; the answer of select_arc ends a planning cycle."""
+        """Append one record."""
         head = struct.pack(
             "=" + _RECORD_HEADER,
             SYNC,
@@ -130,7 +137,7 @@ class DpWriter:
         )
         checks = struct.pack("=" + _CHECKS, zlib.crc32(head), zlib.crc32(record.payload))
         self._file.write(head + checks + record.payload + bytes(_padding(len(record.payload))))
-        if record.kind == Kind.SELECT_ARC_OUT:
+        if record.kind in FLUSHED_KINDS:
             self._file.flush()
 
     def close(self) -> None:

@@ -1,11 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """One drive from a scenario: world, planner and executive together."""
 
-from pyharness.executive import Executive, SafetyWatch
+from pyharness.command_server import CommandServer
+from pyharness.dp import native_schema
+from pyharness.executive import Executive
+from pyharness.faults import SafetyWatch
+from pyharness.live import LiveDrive
 from pyharness.navlib import Zones
 from pyharness.planner import Planner
 from pyharness.records import KIND_END, Outcome, RecordStream, end_payload
-from pyharness.scenario import Scenario, drive_info, navlib_params, zones_request
+from pyharness.scenario import (
+    Scenario,
+    directed_arcs,
+    drive_info,
+    is_on_terrain,
+    navlib_params,
+    zones_request,
+)
+from pyharness.session import RecordFeed, Session
 from pyharness.thinker import Thinker
 from sim.terrain import Terrain
 from sim.vehicle import Vehicle
@@ -13,12 +25,21 @@ from sim.world import World, true_limit_violation
 
 
 def drive(
-    scenario: Scenario, terrain: Terrain, planner_class: type[Planner], stream: RecordStream
+    scenario: Scenario,
+    terrain: Terrain,
+    planner_class: type[Planner],
+    stream: RecordStream,
+    server: CommandServer | None = None,
 ) -> Outcome:
-    """Run one drive of a resolved scenario; everything about it goes into the stream."""
+    """Run one drive of a resolved scenario; everything about it goes into the stream.
+
+    With a server its clients see the stream and control the drive.
+    """
     vehicle = scenario.vehicle
     assert isinstance(vehicle, Vehicle)
     info = drive_info(scenario)
+    if server is not None:
+        stream.subscribers.append(RecordFeed(server, native_schema(), info).take)
     world = World(
         terrain,
         vehicle,
@@ -31,9 +52,9 @@ def drive(
     zones = zones_request(scenario)
     executive = Executive(
         world,
-        lambda: world.image(scenario.executive.look_around_deg),
         Thinker(planner_class(navlib_params(scenario), stream.publish), scenario.executive.compute),
-        info.waypoints,
+        directed_arcs(scenario),
+        info.waypoints if scenario.waypoints else (),
         scenario.executive,
         SafetyWatch(
             lambda truth: true_limit_violation(truth, vehicle),  # type: ignore[arg-type]
@@ -41,6 +62,10 @@ def drive(
         ),
         stream.publish,
     )
-    outcome = executive.run(zones)
+    executive.start(zones, scenario.prior_map_radius_m)
+    if server is not None:
+        live = LiveDrive(executive, world, lambda *place: is_on_terrain(terrain, *place))
+        Session(live, server).run()
+    outcome = executive.finish()
     stream.publish(KIND_END, world.time_s, end_payload(outcome))
     return outcome

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pyharness import metrics
+from pyharness.command_server import CommandServer
 from pyharness.dp import Kind, native_schema
 from pyharness.dp_file import DpWriter
 from pyharness.drive import drive
@@ -44,6 +45,7 @@ def run_drive(
     folder: Path,
     force: bool = False,
     progress: ProgressSink | None = None,
+    server: CommandServer | None = None,
 ) -> dict[str, Any]:
     """Run one drive into a folder; return its summary.
 
@@ -60,7 +62,7 @@ def run_drive(
         if partial.exists():
             shutil.rmtree(partial)
         partial.mkdir(parents=True)
-        summary = _run_into(scenario, terrain, planner_class, partial, progress)
+        summary = _run_into(scenario, terrain, planner_class, partial, progress, server)
         _replace(partial, folder)
     except OSError as error:
         raise OutputError(f"{error.filename or partial}: {error.strerror}") from error
@@ -92,6 +94,7 @@ def _run_into(
     planner_class: type[Planner],
     folder: Path,
     progress: ProgressSink | None,
+    server: CommandServer | None,
 ) -> dict[str, Any]:
     from pyharness.overhead import draw_overhead
 
@@ -106,7 +109,7 @@ def _run_into(
         ]
         if progress is not None:
             subscribers.append(_reporter(history, progress))
-        drive(scenario, terrain, planner_class, RecordStream(subscribers))
+        drive(scenario, terrain, planner_class, RecordStream(subscribers), server)
     duration_wall_s = time.perf_counter() - start_s
 
     summary = with_wall_time(metrics.summarize(history), duration_wall_s)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of event reports, and the text of one."""
+"""The tables of event reports, Navlib's and the executive's, and the text of one."""
 
 import functools
 from collections.abc import Mapping, Sequence
@@ -25,7 +25,7 @@ class EvrDefinition:
 
 @functools.cache
 def evr_table() -> Mapping[int, EvrDefinition]:
-    """Return the definitions by id, in the order of the C table."""
+    """Return the definitions by id, in the order of the C tables."""
     rows = (
         EvrDefinition(
             evr_id=int(row.id),
@@ -36,7 +36,7 @@ def evr_table() -> Mapping[int, EvrDefinition]:
             cause=ffi.string(row.cause).decode(),
             args=ffi.string(row.args).decode(),
         )
-        for row in lib.nav_evr_defs
+        for row in (*lib.nav_evr_defs, *lib.nav_host_evr_defs)
     )
     return {row.evr_id: row for row in rows}
 
@@ -56,4 +56,4 @@ def evr_line(evr: Any) -> str:
     definition = evr_table().get(evr_id)
     severity, name = (definition.severity, definition.name) if definition else ("UNKNOWN", "?")
     args = [float(value) for value in evr["args"]]
-    return f"{float(evr['time_s']):12.3f}  {severity:<13}  {name:<19}  {evr_text(evr_id, args)}"
+    return f"{float(evr['time_s']):12.3f}  {severity:<13}  {name:<21}  {evr_text(evr_id, args)}"

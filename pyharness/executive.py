@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Go To while thinking (TWD, SIM Fig. 9): two state machines on one clock.
+"""Directed driving and Go To, thinking while driving (TWD, SIM Fig. 9).
 
-The rover stands, steers or drives; its one computer works through a queue of activities. Both are
-looked at once per tick of the world, which is the only clock. A planner call is made when its
-activity starts, with the data of that time; its answer counts when the activity ends.
+Three state machines on one clock, the world's ticks: the wheels (`wheels`), the computer
+(`computer`), and here the phase, which says where the next arc comes from:
 
-Phases: a crawl straight ahead that is not checked, then planning cycles; in between the rover
-stands where it has to look and think before it may move. In planning cycle k arc k is driven:
+    DIRECTED  a list of arcs, each evaluated before and while it is driven
+    CRAWL     straight on and Unguarded, where the terrain under the rover is not known
+    GO_TO     arcs that the planner selects, waypoint after waypoint
+
+A planner call is made when its activity starts, with the data of that time; its answer counts when
+the activity ends. In planning cycle k arc k is driven:
 
     start     a stereo pair is taken; the pair from the start of arc k - 1 is merged
     middle    VO, then analyze_terrain, then select_arc for the pose predicted at the end of arc k
@@ -15,102 +18,58 @@ stands where it has to look and think before it may move. In planning cycle k ar
 """
 
 import math
-from collections import deque
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from enum import Enum, auto
 
-import numpy as np
-import numpy.typing as npt
-
-from pyharness import messages
-from pyharness.dp import Kind, Message, used_bytes
+from pyharness.activities import Activities
+from pyharness.computer import Task
+from pyharness.course import Course
+from pyharness.dp import Message
 from pyharness.executive_config import ExecutiveConfig
-from pyharness.messages import Arc, Uncertainty, copy_pose, distance_m, pose_after
-from pyharness.protocols import Truth, World
+from pyharness.faults import FaultError, SafetyWatch
+from pyharness.messages import Arc, DirectedArc, copy_pose, distance_m, pose_after
+from pyharness.protocols import World
 from pyharness.records import Outcome, Sink, Waypoint
-from pyharness.status import Activity
+from pyharness.status import HostEvr, Reason
 from pyharness.stuck import StuckWatch
+from pyharness.telemetry import NO_ARC, Telemetry
 from pyharness.thinker import (
-    Image,
     PlannerFaultError,
     Selection,
     Thinker,
     Verdict,
-    planning_uncertainty,
+    describe_rejections,
 )
+from pyharness.wheels import Motion, Wheels
 
-LENGTH_MIN_M = 1e-6
-TIME_TOLERANCE_S = 1e-9
+LENGTH_TOLERANCE_M = 1e-6
+CRAWL_PIECE_MIN_M = 0.1
+# after no path was found it goes closer to zones for some arcs: out of the margin, or along it
+MARGIN_WAIVED_ARCS = 5
+GOAL_RADIUS_M = 1.0  # about the end of a directed arc, towards which terrain is analyzed
 
-PLAN = (Activity.PROCESS_DISPARITY, Activity.ANALYZE_TERRAIN, Activity.SELECT_ARC)
-LOOK_AND_PLAN = (Activity.IMAGING, Activity.VISUAL_ODOMETRY, *PLAN)
-CRAWL_CYCLE = (Activity.PROCESS_DISPARITY, Activity.VISUAL_ODOMETRY)
-PLANNING_CYCLE = (*CRAWL_CYCLE, Activity.ANALYZE_TERRAIN, Activity.SELECT_ARC)
-
-ARC_ACTIVITIES = (
-    Activity.SELECT_ARC,
-    Activity.EVALUATE_ARC,
-    Activity.STEERING,
-    Activity.DRIVING,
-)
+# the modes that go on to another path when one is refused
+REROUTING = ("avoid_koz", "avoid_all")
 
 
-class Motion(Enum):
-    """What the wheels do."""
+class Phase(Enum):
+    """Where the next arc comes from."""
 
-    STANDING = auto()
-    STEERING = auto()
-    DRIVING = auto()
-
-
-@dataclass(frozen=True, slots=True)
-class SafetyWatch:
-    """What operators would call a fault of the true rover.
-
-    Attributes:
-        limit_violation: Names the limit a truth violates, with value and limit; None if it is well.
-        is_forbidden: Whether a true position, north and east, violates a zone.
-    """
-
-    limit_violation: Callable[[Truth], str | None]
-    is_forbidden: Callable[[float, float], bool]
-
-
-@dataclass(frozen=True, slots=True)
-class Job:
-    """What the computer is busy with; `finish` makes its result count."""
-
-    end_s: float
-    finish: Callable[[], None]
-
-
-@dataclass(slots=True)
-class Images:
-    """Images not merged yet: those of the arc being driven wait for the next one."""
-
-    taken_count: int = 0
-    released: deque[Image] = field(default_factory=deque)
-    newest: list[Image] = field(default_factory=list)
-
-    def release(self) -> None:
-        """Let everything taken so far be merged."""
-        self.released.extend(self.newest)
-        self.newest.clear()
-
-
-class _FaultError(Exception):
-    """Ends a drive; its arguments are the fault's name and the details."""
+    DIRECTED = auto()
+    CRAWL = auto()
+    GO_TO = auto()
 
 
 class Executive:
-    """Drives a world with a planner through waypoints."""
+    """Drives a world with a planner along arcs and through waypoints."""
 
     def __init__(
         self,
         world: World,
-        look_around: Callable[[], npt.NDArray[np.float32]],
         thinker: Thinker,
+        arcs: Sequence[DirectedArc],
         waypoints: Sequence[Waypoint],
         config: ExecutiveConfig,
         safety: SafetyWatch,
@@ -118,401 +77,391 @@ class Executive:
     ) -> None:
         """Stand at the start, wheels straight, with nothing seen and nothing planned."""
         self._world = world
-        self._look_around = look_around
         self._thinker = thinker
-        self._waypoints = waypoints
         self._config = config
         self._safety = safety
-        self._sink = sink
+        self._telemetry = Telemetry(world, sink)
+        self._course = Course(arcs, waypoints, self._telemetry)
+        self._wheels = Wheels(world, self._telemetry)
+        self._activities = Activities(world, thinker, self._wheels, config, self._telemetry)
+        self._stuck = StuckWatch(config.stuck)
 
-        self._waypoint_index = 0
-        self._cycle = 0
-        self._motion = Motion.STANDING
-        self._motion_start_s = world.time_s
-        self._steering_end_s = 0.0
-        self._arc = Arc(0.0, 0.0)
-        self._crawl_left_m = config.crawl_length_m
-        self._driven_m = 0.0  # commanded path of the arcs before this one
-        self._fixed_m = 0.0  # commanded path at the last VO fix
-
-        self._images = Images()
-        self._queue: deque[int] = deque()
-        self._job: Job | None = None
-        self._is_look_around_due = False
+        self.outcome: Outcome | None = None
+        self._phase = Phase.DIRECTED
+        self._mode = ""  # in which the present arc is checked
+        self._ahead = NO_ARC  # what of the directed arc comes after the piece under the wheels
+        self._crawl_start = copy_pose(world.estimate)
+        self._is_cleared = False  # whether the directed arc ahead has been evaluated
         self._selection: Selection | None = None
         self._is_leaving = False
-        self._evaluate_at_s = math.inf
         self._verdict = "nothing had been checked yet"
         self._unsafe_count = 0
         self._no_path_count = 0
-        self._stuck = StuckWatch(config.stuck)
+        self._margin_waived_arcs = 0
 
-    def run(self, zones: Message) -> Outcome:
-        """Set the zones and drive until the last waypoint is reached or a fault ends the drive."""
-        try:
+    # -------------------------------------------------------------- from outside
+
+    def start(self, zones: Message, prior_map_radius_m: float = 0.0) -> None:
+        """Set the zones, take in what is known of the terrain around, begin."""
+        with self._ending():
             self._thinker.set_zones(zones)
-            self._publish_estimate()
-            if self._is_crawling:
-                self._begin_crawl_arc()
-            else:
-                self._stand(LOOK_AND_PLAN)
-            while not self._is_arrived():
-                self._finish_job()
-                self._move()
-                self._start_job()
+            self._telemetry.estimate(self._activities.predictor.now())
+            if prior_map_radius_m > 0.0:
+                self._activities.images.take(lambda: self._world.ground_around(prior_map_radius_m))
+                self._activities.merge_all()
+            self._next()
+
+    def finish(self) -> Outcome:
+        """Drive until everything is done or a fault ends the drive."""
+        while self.outcome is None:
+            self.advance()
+        return self.outcome
+
+    def advance(self) -> None:
+        """Live through one tick of the world."""
+        with self._ending():
+            if self._is_arrived():
+                self._end(Outcome("goal_reached"))
+                return
+            self._activities.computer.finish_job()
+            self._move()
+            if self.outcome is None:
+                self._think()
                 self._tick()
-            outcome = Outcome("goal_reached")
-        except _FaultError as fault:
-            outcome = Outcome(*fault.args)
+
+    def stop(self) -> None:
+        """End the drive by command."""
+        self._telemetry.event(HostEvr.STOPPED)
+        self._end(Outcome("stopped", "by command"))
+
+    def place(self, north_m: float, east_m: float, yaw_rad: float) -> None:
+        """Set the rover down somewhere else and begin again with the arc or Go To it was at."""
+        with self._ending():
+            self._wheels.end()
+            self._activities.computer.clear()
+            self._activities.images.clear()
+            self._world.place(north_m, east_m, yaw_rad)
+            self._telemetry.event(HostEvr.PLACED, north_m, east_m, yaw_rad)
+            self._stuck.new_goal()
+            self._unsafe_count = self._no_path_count = 0
+            self._next()
+
+    def image_now(self) -> int:
+        """Take an image and merge all that were taken; return the number of its points."""
+        points_m = self._world.image()
+        self._activities.images.take(lambda: points_m)
+        self._activities.merge_all()
+        return len(points_m)
+
+    def evaluate(self, arc: Arc, mode: str, place: tuple[float, float, float] | None) -> Verdict:
+        """Ask the planner about an arc from north, east and yaw, or from where the rover is.
+
+        Raises:
+            PlannerFaultError: The planner refuses, as it does before it has seen terrain.
+        """
+        pose = copy_pose(self._world.estimate)
+        if place is not None:
+            pose = replace(pose, x_m=place[0], y_m=place[1], yaw_rad=place[2])
+        return self._thinker.evaluate(
+            self._world.time_s, pose, self._activities.predictor.now(), arc, mode
+        )[0]
+
+    # -------------------------------------------------------------- ends
+
+    @contextmanager
+    def _ending(self) -> Iterator[None]:
+        """Let a fault end the drive."""
+        try:
+            yield
+        except FaultError as fault:
+            self._fail(fault)
         except PlannerFaultError as error:
-            outcome = Outcome("planner_error", str(error))
-        self._close_motion()
-        self._publish_estimate()
-        return outcome
+            self._fail(FaultError("planner_error", str(error)))
+
+    def _fail(self, fault: FaultError) -> None:
+        self._telemetry.event(fault.event, *fault.values)
+        self._end(Outcome(fault.name, fault.detail))
+
+    def _end(self, outcome: Outcome) -> None:
+        """Stop the rover and whatever it was thinking about."""
+        self._wheels.end()
+        self._activities.computer.clear()
+        self._telemetry.estimate(self._activities.predictor.now())
+        self.outcome = outcome
 
     def _tick(self) -> None:
         """Advance the world and look at the true rover as operators would."""
         truth = self._world.step()
+        self._telemetry.truth(truth)
+        self._safety.check(truth, self._verdict)
         time_s = self._world.time_s
-        self._publish(Kind.TRUTH, messages.truth_record(time_s, truth))
-        place = f"true position north {truth.x_m:.2f} m, east {truth.y_m:.2f} m"
-        if not truth.on_map:
-            raise _FaultError("left_map", place)
-        violation = self._safety.limit_violation(truth)
-        if violation is not None:
-            raise _FaultError("limit_violation", f"{violation}; {place}; {self._verdict}")
-        if self._safety.is_forbidden(truth.x_m, truth.y_m):
-            raise _FaultError("kioz_violation", f"{place}; {self._verdict}")
         if time_s >= self._config.time_limit_s:
             left_m = distance_m(self._world.estimate, self._goal)
-            raise _FaultError("time_limit", f"{time_s:.0f} s, {left_m:.1f} m from the waypoint")
+            detail = f"{time_s:.0f} s, {left_m:.1f} m from the waypoint"
+            raise FaultError("time_limit", detail, time_s, left_m)
 
-    def _is_arrived(self) -> bool:
-        """Tick off the waypoints reached; was that the last?"""
-        while distance_m(self._world.estimate, self._goal) <= self._goal.radius_m:
-            if self._waypoint_index == len(self._waypoints) - 1:
-                return True
-            self._waypoint_index += 1
-            self._stuck.new_goal()
-        return False
+    # -------------------------------------------------------------- where to
 
     @property
     def _goal(self) -> Waypoint:
-        return self._waypoints[self._waypoint_index]
+        """The present waypoint; without any, the end of the directed arc."""
+        waypoint = self._course.waypoint
+        if waypoint is not None:
+            return waypoint
+        end = pose_after(copy_pose(self._world.estimate), self._arc_ahead)
+        return Waypoint(end.x_m, end.y_m, GOAL_RADIUS_M, self._mode)
+
+    def _is_arrived(self) -> bool:
+        """Tick off the waypoints reached; was that the last?"""
+        if self._phase is Phase.DIRECTED:
+            return False
+        while self._course.tick_off(self._world.estimate):
+            self._stuck.new_goal()
+        return self._course.waypoint is None
+
+    def _next(self) -> None:
+        """Turn to the next arc of the list, or to the waypoints after it."""
+        directed = self._course.arc
+        if directed is not None:
+            self._phase, self._mode, self._ahead = Phase.DIRECTED, directed.mode, directed.arc
+            self._is_cleared = False
+            self._course.report_arc()
+            self._stand(*self._look_and_analyze, self._evaluate_ahead)
+        elif self._course.waypoint is not None:
+            self._begin_go_to()
+        else:
+            self._end(Outcome("arcs_driven"))
+
+    def _begin_go_to(self) -> None:
+        """Look; then crawl where the terrain under the rover is not known, else plan."""
+        self._phase, self._ahead = Phase.GO_TO, NO_ARC
+        self._course.report_waypoint()
+        next_task = self._check_map if self._config.crawl_length_m > 0.0 else self._select_arc
+        self._stand(*self._look_and_analyze, next_task)
+
+    def _map_checked(self, verdict: Verdict) -> None:
+        if verdict.reason != Reason.UNKNOWN:
+            self._telemetry.event(HostEvr.CRAWL_SKIPPED)
+            self._activities.computer.plan([self._select_arc])
+            return
+        self._phase, self._mode = Phase.CRAWL, "unguarded"
+        self._crawl_start = copy_pose(self._world.estimate)
+        self._ahead, self._is_cleared = Arc(self._config.crawl_length_m, 0.0), False
+        self._telemetry.event(HostEvr.CRAWL, self._config.crawl_length_m)
+        self._activities.computer.plan([self._evaluate_ahead])
+
+    def _crawl_on(self) -> None:
+        """Go on until the rover believes that the crawl is long enough."""
+        here, start = self._world.estimate, self._crawl_start
+        moved_m = math.hypot(here.x_m - start.x_m, here.y_m - start.y_m)
+        left_m = self._config.crawl_length_m - moved_m
+        if left_m > LENGTH_TOLERANCE_M:
+            self._ahead = Arc(max(left_m, CRAWL_PIECE_MIN_M), 0.0)
+            self._begin_piece()
+        else:
+            self._phase, self._ahead = Phase.GO_TO, NO_ARC
+            self._stand(*self._plan)
 
     # -------------------------------------------------------------- moving
 
     def _move(self) -> None:
-        if self._motion is Motion.DRIVING and self._world.arc_done:
-            self._end_arc(1.0)
-            if self._is_crawling:
-                self._crawl_on()
-        if self._motion is Motion.STEERING and self._is_past(self._steering_end_s):
-            self._drive()
-        if self._motion is Motion.STANDING:
+        if self._wheels.is_arc_done:
+            self._end_arc()
+            self._unsafe_count = 0
+            self._go_on()
+        if self._wheels.drive_if_steered():
+            self._driving_started()
+        if self._wheels.motion is Motion.STANDING:
             self._leave_standing()
 
-    def _begin_crawl_arc(self) -> None:
-        self._begin_arc(Arc(min(self._config.crawl_arc_length_m, self._crawl_left_m), 0.0))
-
-    def _crawl_on(self) -> None:
-        self._crawl_left_m -= self._arc.length_m
-        if self._is_crawling:
-            self._begin_crawl_arc()
-        else:
-            self._stand(PLAN)
-
-    @property
-    def _is_crawling(self) -> bool:
-        return self._crawl_left_m > LENGTH_MIN_M
+    def _go_on(self) -> None:
+        """Turn to what comes after an arc that was driven to its end."""
+        if self._phase is Phase.CRAWL:
+            self._crawl_on()
+        elif self._phase is Phase.DIRECTED:
+            if self._ahead.is_empty:
+                self._course.arc_driven()
+                self._next()
+            else:
+                self._begin_piece()
+        elif self._config.thinking == "standing":
+            self._stand(*self._look_and_analyze, self._select_arc)
 
     def _leave_standing(self) -> None:
-        """Drive the selected arc, or think again where there is none."""
+        """Drive the arc that was evaluated or selected, or think again where there is none."""
+        if self._phase is not Phase.GO_TO:
+            if self._is_cleared:
+                self._is_cleared = False
+                self._begin_piece()
+            return
         selection, self._selection = self._selection, None
         if selection is None:
-            if self._job is None and not self._queue:
-                self._stand(PLAN)
+            if self._activities.computer.is_done:
+                self._stand(*self._plan)
         elif selection.arc is None:
             self._no_path_found(selection)
         else:
             self._no_path_count = 0
-            self._cycle += 1
-            self._is_leaving = selection.is_leaving
-            self._verdict = f"select_arc had passed the arc in mode {self._goal.mode}"
-            self._begin_arc(selection.arc)
+            self._margin_waived_arcs = max(0, self._margin_waived_arcs - 1)
+            self._telemetry.cycle += 1
+            self._is_leaving, self._mode = selection.is_leaving, selection.mode
+            self._verdict = f"select_arc had passed the arc in mode {selection.mode}"
+            self._begin(selection.arc)
 
     def _no_path_found(self, selection: Selection) -> None:
+        """Look around and try again, where the mode or unknown terrain gives hope."""
         self._no_path_count += 1
-        if self._no_path_count > self._config.replans_max:
-            raise _FaultError(
+        if Reason.KIOZ in selection.rejections:
+            self._margin_waived_arcs = MARGIN_WAIVED_ARCS
+        is_unknown = Reason.UNKNOWN in selection.rejections
+        if self._is_final(selection.mode, is_unknown, self._no_path_count):
+            reason = selection.main_reason
+            raise FaultError(
                 "no_path",
-                f"{self._no_path_count} times in a row; paths rejected: {selection.rejections}",
+                f"{_times(self._no_path_count)} in mode {selection.mode}; paths rejected:"
+                f" {describe_rejections(selection.rejections)}",
+                self._no_path_count,
+                reason,
+                selection.rejections.get(reason, 0),
             )
-        self._is_look_around_due = True
-        self._stand(LOOK_AND_PLAN)
+        self._telemetry.event(HostEvr.LOOKING_AROUND, self._no_path_count)
+        do = self._activities
+        self._stand(do.look_around, do.fix_pose, *self._plan)
 
-    def _begin_arc(self, arc: Arc) -> None:
-        """Steer where the wheels stand differently, else drive at once."""
-        steering_s = self._world.steering_duration_s(self._arc.curvature_per_m, arc.curvature_per_m)
-        self._close_motion()
-        self._arc = arc
-        if steering_s > 0.0:
-            self._motion = Motion.STEERING
-            self._steering_end_s = self._world.time_s + steering_s
-        else:
-            self._drive()
+    def _is_final(self, mode: str, is_unknown: bool, count: int) -> bool:
+        """Whether a refusal ends the drive.
 
-    def _drive(self) -> None:
-        now_s = self._world.time_s
-        self._close_motion()
-        self._motion = Motion.DRIVING
-        self._world.start_arc(self._arc.length_m, self._arc.heading_change_rad)
+        Unguarded and Guarded know one path only; Guarded may look again at what was not seen.
+        """
+        may_retry = mode in REROUTING or (mode == "guarded" and is_unknown)
+        return self._phase is not Phase.GO_TO or not may_retry or count > self._config.replans_max
+
+    def _begin_piece(self) -> None:
+        """Drive on along a directed arc, as far as to the next image."""
+        whole = self._ahead
+        length_m, spacing_m = abs(whole.length_m), self._config.image_spacing_m
+        fraction = spacing_m / length_m if length_m > spacing_m + LENGTH_TOLERANCE_M else 1.0
+        self._ahead = whole.part(1.0 - fraction)
+        self._begin(whole.part(fraction))
+
+    def _begin(self, arc: Arc) -> None:
+        if self._wheels.begin(arc):
+            self._driving_started()
+
+    def _driving_started(self) -> None:
+        do = self._activities
         self._stuck.start(self._world.estimate)
-        self._images.release()
-        self._take_image(self._world.image(), 1)
-        self._publish_activity(Activity.IMAGING, now_s, now_s + self._config.compute.imaging_s)
-        self._publish_estimate()
-        if self._is_crawling:
-            self._verdict = "the first crawl is driven unchecked"
-            self._queue = deque(CRAWL_CYCLE)
-        else:
-            self._queue = deque(PLANNING_CYCLE)
-            self._evaluate_at_s = now_s
+        do.images.release()
+        do.evaluate_soon()
+        tasks: list[Task] = []
+        if self._phase is not Phase.GO_TO or self._config.thinking == "while_driving":
+            do.image_driving()
+            tasks = [do.process_disparity, do.fix_pose, self._analyze_terrain]
+            if self._phase is Phase.GO_TO:
+                tasks.append(self._select_arc)
+        do.computer.plan(tasks)
+        self._telemetry.estimate(do.predictor.now())
 
-    def _end_arc(self, fraction: float) -> None:
-        """Close an arc that was driven to the given fraction."""
-        driven = self._arc.part(fraction)
-        self._close_motion()
-        self._evaluate_at_s = math.inf
-        self._driven_m += abs(driven.length_m)
-        reason = self._stuck.arc_finished(driven, self._world.estimate, self._goal)
+    def _end_arc(self) -> None:
+        driven = self._wheels.end()
+        here = self._world.estimate
+        goal = None if self._phase is Phase.DIRECTED else self._goal
+        reason = self._stuck.arc_finished(driven, here, goal)
         if reason is not None:
-            raise _FaultError("stuck", reason)
-        if fraction == 1.0:
-            self._unsafe_count = 0
+            raise FaultError("stuck", reason, here.x_m, here.y_m)
 
-    def _stand(self, activities: Sequence[int]) -> None:
-        """Stand until the activities are done, everything seen so far merged."""
-        self._images.release()
+    def _stand(self, *tasks: Task) -> None:
+        """Stand until the tasks are done, everything seen so far merged."""
+        self._activities.images.release()
         self._selection = None
-        self._queue = deque(activities)
+        self._activities.computer.plan(tasks)
 
-    def _close_motion(self) -> None:
-        """Report what the wheels did until now; from now on the rover stands."""
-        now_s = self._world.time_s
-        activity = {
-            Motion.STANDING: Activity.WAITING,
-            Motion.STEERING: Activity.STEERING,
-            Motion.DRIVING: Activity.DRIVING,
-        }[self._motion]
-        if now_s > self._motion_start_s:
-            self._publish_activity(activity, self._motion_start_s, now_s)
-        self._motion = Motion.STANDING
-        self._motion_start_s = now_s
-
-    def _is_past(self, time_s: float) -> bool:
-        return self._world.time_s >= time_s - TIME_TOLERANCE_S
+    @property
+    def _arc_ahead(self) -> Arc:
+        """What is still to be driven, a directed arc to its end."""
+        rest, ahead = self._wheels.remaining, self._ahead
+        return Arc(
+            rest.length_m + ahead.length_m, rest.heading_change_rad + ahead.heading_change_rad
+        )
 
     # -------------------------------------------------------------- thinking
 
-    def _finish_job(self) -> None:
-        job = self._job
-        if job is not None and self._is_past(job.end_s):
-            self._job = None
-            job.finish()
+    def _think(self) -> None:
+        """Give an idle computer its next task; the safety of the arc comes first."""
+        if self._activities.is_evaluation_due:
+            self._evaluate_driven()
+        self._activities.computer.start_next()
 
-    def _start_job(self) -> None:
-        """Give an idle computer its next activity, if there is one that can start."""
-        if self._job is not None:
-            return
-        if self._is_evaluation_due():
-            self._evaluate_arc()
-            return
-        if (
-            self._queue
-            and self._queue[0] == Activity.PROCESS_DISPARITY
-            and not self._images.released
-        ):
-            self._queue.popleft()
-        if self._queue and self._is_ready(self._queue[0]):
-            self._start(self._queue[0])
+    @property
+    def _plan(self) -> tuple[Task, ...]:
+        return self._activities.process_disparity, self._analyze_terrain, self._select_arc
 
-    def _is_ready(self, activity: int) -> bool:
-        """VO waits for the middle of the arc; everything else can start."""
-        return (
-            activity != Activity.VISUAL_ODOMETRY
-            or self._motion is not Motion.DRIVING
-            or self._world.arc_fraction >= self._config.vo_fraction
-        )
+    @property
+    def _look_and_analyze(self) -> tuple[Task, ...]:
+        do = self._activities
+        return do.look, do.fix_pose, do.process_disparity, self._analyze_terrain
 
-    def _start(self, activity: int) -> None:
-        starts = {
-            Activity.IMAGING: self._look,
-            Activity.VISUAL_ODOMETRY: self._fix_pose,
-            Activity.PROCESS_DISPARITY: self._process_disparity,
-            Activity.ANALYZE_TERRAIN: self._analyze_terrain,
-            Activity.SELECT_ARC: self._select_arc,
-        }
-        starts[activity]()
-
-    def _occupy(self, activity: int, duration_s: float, finish: Callable[[], None]) -> None:
-        """Keep the computer busy; the activity leaves the queue when it is done."""
-        now_s = self._world.time_s
-        self._job = Job(now_s + duration_s, finish)
-        self._publish_activity(activity, now_s, now_s + duration_s)
-
-    def _look(self) -> None:
-        """Take images standing: ahead, or all around after no path was found."""
-        self._queue.popleft()
-        if self._is_look_around_due:
-            pair_count, points_m = len(self._config.look_around_deg), self._look_around()
-        else:
-            pair_count, points_m = 1, self._world.image()
-        self._is_look_around_due = False
-        self._take_image(points_m, pair_count)
-        duration_s = pair_count * self._config.compute.imaging_s
-        self._occupy(Activity.IMAGING, duration_s, self._images.release)
-
-    def _take_image(self, points_m: npt.NDArray[np.float32], pair_count: int) -> None:
-        self._images.taken_count += 1
-        pose = copy_pose(self._world.estimate)
-        self._images.newest.append(
-            Image(self._images.taken_count, self._world.time_s, pose, points_m, pair_count)
-        )
-
-    def _process_disparity(self) -> None:
-        image = self._images.released.popleft()
-        if not self._images.released:
-            self._queue.popleft()
-        duration_s = self._thinker.process(image)
-        self._occupy(Activity.PROCESS_DISPARITY, duration_s, _nothing)
-
-    def _fix_pose(self) -> None:
-        self._queue.popleft()
-        self._occupy(Activity.VISUAL_ODOMETRY, self._config.compute.vo_s, self._pose_fixed)
-
-    def _pose_fixed(self) -> None:
-        if self._world.visual_odometry():
-            self._fixed_m = self._driven_m + abs(self._driven_part.length_m)
-        self._publish_estimate()
-        if self._motion is Motion.DRIVING and not self._is_crawling:
-            self._evaluate_at_s = self._world.time_s
-
-    def _analyze_terrain(self) -> None:
-        self._queue.popleft()
-        estimate = self._world.estimate
-        duration_s = self._thinker.analyze(
-            self._world.time_s,
-            copy_pose(estimate),
-            self._goal,
-            self._config.uncertainty.global_sigmas * estimate.sigma_position_m,
-        )
-        self._occupy(Activity.ANALYZE_TERRAIN, duration_s, _nothing)
-
-    def _select_arc(self) -> None:
-        """Select from the pose predicted at the end of this arc, unless that is the last goal."""
-        self._queue.popleft()
-        remaining = self._remaining_part
-        pose = pose_after(copy_pose(self._world.estimate), remaining)
+    def _analyze_terrain(self) -> bool:
         goal = self._goal
-        if distance_m(pose, goal) <= goal.radius_m:
-            following = self._waypoints[self._waypoint_index + 1 :]
-            if not following:
-                return
-            goal = following[0]
-        selection, duration_s = self._thinker.select(
-            self._world.time_s,
-            pose,
-            self._selection_uncertainty(abs(remaining.length_m)),
-            goal,
-            self._arc,
-        )
+        return self._activities.analyze_terrain(goal, self._zone_margin_m(goal))
 
-        def finish() -> None:
+    def _zone_margin_m(self, goal: Waypoint) -> float:
+        """Return what is kept from zones on top, where a mode plans round them."""
+        is_kept = goal.mode in REROUTING and self._margin_waived_arcs == 0
+        return self._config.uncertainty.zone_margin_m if is_kept else 0.0
+
+    def _select_arc(self) -> bool:
+        """Select for this waypoint, or for the next where this arc ends in the waydisc."""
+        pose, _ = self._activities.predictor.at_end(self._wheels.remaining)
+        goal = self._course.waypoint_from(pose)
+        if goal is None:
+            return True
+
+        def finish(selection: Selection) -> None:
             self._selection = selection
 
-        self._occupy(Activity.SELECT_ARC, duration_s, finish)
+        # after arcs that turned out unsafe it keeps more distance
+        margin_m = self._unsafe_count * self._config.uncertainty.unsafe_margin_m
+        return self._activities.select_arc(goal, margin_m, self._zone_margin_m(goal), finish)
 
-    def _is_evaluation_due(self) -> bool:
-        return (
-            self._motion is Motion.DRIVING
-            and self._is_past(self._evaluate_at_s)
-            and 1.0 - self._world.arc_fraction >= self._config.evaluate_remaining_min
-        )
+    def _check_map(self) -> bool:
+        """Is the terrain under the rover known? Guarded refuses a pose where it is not."""
+        return self._activities.evaluate_arc(NO_ARC, "guarded", self._map_checked)
 
-    def _evaluate_arc(self) -> None:
-        now_s = self._world.time_s
-        self._evaluate_at_s = now_s + self._config.evaluate_period_s
-        verdict, duration_s = self._thinker.evaluate(
-            now_s,
-            copy_pose(self._world.estimate),
-            self._uncertainty(0.0),
-            self._remaining_part,
-            self._goal.mode,
-            self._is_leaving,
-        )
-        cycle = self._cycle
+    def _evaluate_ahead(self) -> bool:
+        """Check a directed arc before it is driven."""
 
-        def finish() -> None:
-            if self._motion is Motion.DRIVING and self._cycle == cycle:
+        def finish(verdict: Verdict) -> None:
+            self._arc_evaluated(verdict)
+            self._is_cleared = True
+
+        return self._activities.evaluate_arc(self._arc_ahead, self._mode, finish)
+
+    def _evaluate_driven(self) -> None:
+        """Check what is left of the arc being driven."""
+        cycle = self._telemetry.cycle
+
+        def finish(verdict: Verdict) -> None:
+            if self._wheels.motion is Motion.DRIVING and self._telemetry.cycle == cycle:
                 self._arc_evaluated(verdict)
 
-        self._occupy(Activity.EVALUATE_ARC, duration_s, finish)
+        is_leaving = self._phase is Phase.GO_TO and self._is_leaving
+        self._activities.evaluate_arc(self._arc_ahead, self._mode, finish, is_leaving)
 
     def _arc_evaluated(self, verdict: Verdict) -> None:
+        """Stop on an unsafe arc and plan another, where the phase and the mode allow one."""
         self._verdict = verdict.text
         if verdict.is_safe:
             return
         self._unsafe_count += 1
-        if self._unsafe_count > self._config.replans_max:
-            raise _FaultError("unsafe_arc", f"{self._unsafe_count} times in a row; {verdict.text}")
-        fraction = self._world.arc_fraction
-        self._world.stop()
-        self._end_arc(fraction)
-        self._stand(LOOK_AND_PLAN)
-
-    # -------------------------------------------------------------- where the rover is
-
-    @property
-    def _driven_part(self) -> Arc:
-        """What has been driven of the arc under the wheels."""
-        fraction = self._world.arc_fraction if self._motion is Motion.DRIVING else 0.0
-        return self._arc.part(fraction)
-
-    @property
-    def _remaining_part(self) -> Arc:
-        """What is still to be driven of it; nothing when the rover stands."""
-        fraction = self._world.arc_fraction if self._motion is Motion.DRIVING else 1.0
-        return self._arc.part(1.0 - fraction)
-
-    def _selection_uncertainty(self, remaining_m: float) -> Uncertainty:
-        uncertainty = self._uncertainty(remaining_m)
-        margin_m = self._unsafe_count * self._config.uncertainty.unsafe_margin_m
-        return replace(uncertainty, position_m=uncertainty.position_m + margin_m)
-
-    def _uncertainty(self, remaining_m: float) -> Uncertainty:
-        since_fix_m = self._driven_m + abs(self._driven_part.length_m) - self._fixed_m
-        return planning_uncertainty(
-            self._config.uncertainty, self._world.estimate, since_fix_m, remaining_m
-        )
-
-    # -------------------------------------------------------------- records
-
-    def _publish(self, kind: int, record: Message) -> None:
-        self._sink(kind, self._world.time_s, used_bytes(kind, record))
-
-    def _publish_estimate(self) -> None:
-        record = messages.estimate_record(
-            self._world.time_s, self._world.estimate, self._uncertainty(0.0)
-        )
-        self._publish(Kind.ESTIMATE, record)
-
-    def _publish_activity(self, activity: int, start_s: float, end_s: float) -> None:
-        has_arc = activity in ARC_ACTIVITIES
-        arc = self._arc if has_arc else Arc(0.0, 0.0)
-        record = messages.timeline_record(activity, start_s, end_s, self._cycle, arc)
-        self._publish(Kind.TIMELINE, record)
+        count, reason = self._unsafe_count, verdict.reason
+        if self._is_final(self._mode, reason == Reason.UNKNOWN, count):
+            detail = f"{_times(count)} in mode {self._mode}; {verdict.text}"
+            raise FaultError("unsafe_arc", detail, count, reason, verdict.failing_at)
+        self._telemetry.event(HostEvr.ARC_STOPPED, self._world.arc_fraction, reason, count)
+        self._end_arc()
+        self._stand(*self._look_and_analyze, self._select_arc)
 
 
-def _nothing() -> None:
-    """Finish an activity whose result is already in the planner."""
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times in a row"

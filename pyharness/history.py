@@ -25,7 +25,7 @@ class History:
         distances_m: True distance driven at each of them.
         evaluations: Every evaluate_arc, request and answer.
         timeline: What the executive did.
-        evrs: Event reports.
+        evrs: Event reports, of Navlib and of the executive.
         analysis: The last answer of analyze_terrain.
         zones: The last zones set.
         params: Navlib's parameters, where the planner reports them; else the defaults.
@@ -86,7 +86,7 @@ class History:
             self.estimates.append(message)
         elif kind == Kind.TIMELINE:
             self.timeline.append(message)
-        elif kind == Kind.EVR:
+        elif kind in (Kind.EVR, Kind.HOST_EVR):
             self.evrs.append(message)
         elif kind == Kind.ANALYZE_TERRAIN_OUT:
             self.analysis = message
@@ -111,6 +111,7 @@ _WANTED = frozenset(
         Kind.ESTIMATE,
         Kind.TIMELINE,
         Kind.EVR,
+        Kind.HOST_EVR,
         Kind.ANALYZE_TERRAIN_OUT,
         Kind.SET_KIOZ_IN,
         Kind.INIT_IN,

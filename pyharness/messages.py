@@ -40,6 +40,14 @@ class Arc:
 
 
 @dataclass(frozen=True, slots=True)
+class DirectedArc:
+    """An arc that is driven as given, and the mode in which it is checked."""
+
+    arc: Arc
+    mode: str
+
+
+@dataclass(frozen=True, slots=True)
 class Pose6:
     """A pose in SITE."""
 

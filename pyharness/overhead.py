@@ -27,6 +27,7 @@ from sim.terrain import Terrain
 # heights at which a rock is a hazard to the belly pan, to a wheel, to the rocker (SIM Fig. 10)
 ROCK_CLASSES = ((0.25, 0.35, "#f2c14e"), (0.35, 0.46, "#e4572e"), (0.46, math.inf, "#8b1e3f"))
 TRACK_COLOR, ARC_COLOR, GOAL_COLOR = "#00c2ff", "#ffffff", "#39ff14"
+WHEEL_COLOR = "#8c8c8c"
 MAP_COLOR, START_COLOR, KEEP_OUT_COLOR, KEEP_IN_COLOR = "#ffd400", "#ff00c8", "#ff3b30", "#34c759"
 MARGIN_M = 8.0
 CELLS_MAX = 1500
@@ -50,9 +51,9 @@ def draw_overhead(history: History, terrain: Terrain, path: Path) -> None:
         figure = Figure(figsize=size_in, dpi=130, layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.add_subplot()
-        _draw_terrain(figure, axes, terrain, window)
+        draw_terrain(figure, axes, terrain, window)
         rock_handles = _draw_rocks(axes, terrain, window)
-        _draw_zones(axes, history)
+        draw_zones(axes, history)
         _draw_map(axes, history)
         _draw_arcs(axes, history)
         _draw_track(axes, history)
@@ -84,7 +85,7 @@ def _window(history: History, terrain: Terrain) -> Window:
     )
 
 
-def _draw_terrain(figure: Figure, axes: Axes, terrain: Terrain, window: Window) -> None:
+def draw_terrain(figure: Figure, axes: Axes, terrain: Terrain, window: Window) -> None:
     """Shade the heights, sun from the north-west, and colour them."""
     south_m, north_m, west_m, east_m = window
     rows = _span(terrain.north_min_m, terrain.resolution_m, south_m, north_m)
@@ -137,7 +138,8 @@ def _draw_rocks(axes: Axes, terrain: Terrain, window: Window) -> list[Patch]:
     return handles
 
 
-def _draw_zones(axes: Axes, history: History) -> None:
+def draw_zones(axes: Axes, history: History) -> None:
+    """Draw the keep-in and keep-out zones as they were set."""
     if history.zones is None:
         return
     for zone in history.zones["zones"][: int(history.zones["zone_count"])]:
@@ -204,7 +206,15 @@ def _arc_line(request: Message, answer: Message) -> npt.NDArray[np.float64]:
     return np.array([(item.y_m, item.x_m) for item in poses])
 
 
+def wheel_tracks_m(history: History) -> npt.NDArray[np.float64]:
+    """Where the wheels touched the ground, [6, steps, 2] of east and north; NaN off the map."""
+    contacts = history.truth["contacts"]
+    return np.stack([contacts["y_m"].T, contacts["x_m"].T], axis=-1)
+
+
 def _draw_track(axes: Axes, history: History) -> None:
+    wheels = LineCollection(list(wheel_tracks_m(history)), colors=WHEEL_COLOR, linewidths=0.5)
+    axes.add_collection(wheels, autolim=False)
     pose = history.truth["pose"]
     axes.plot(pose["y_site_m"], pose["x_site_m"], "-", color=TRACK_COLOR, linewidth=1.0, zorder=4)
 
@@ -244,7 +254,7 @@ def _finish(axes: Axes, history: History, window: Window, rocks: Iterable[Patch]
     axes.set(xlim=(west_m, east_m), ylim=(south_m, north_m), aspect="equal")
     axes.set(xlabel="east, m", ylabel="north, m")
     axes.grid(color="white", alpha=0.18, linewidth=0.5)
-    _draw_scale(axes, window)
+    draw_scale(axes, window)
     axes.legend(handles=[*_line_handles(history), *rocks], **LEGEND)
     info, outcome = history.info, history.outcome
     title = f"{info.name}, seed {info.seed}, {info.planner}, {info.waypoints[-1].mode}"
@@ -264,7 +274,7 @@ def _finish(axes: Axes, history: History, window: Window, rocks: Iterable[Patch]
         )
 
 
-def _draw_scale(axes: Axes, window: Window) -> None:
+def draw_scale(axes: Axes, window: Window) -> None:
     """Draw a bar of a round length and an arrow to the north."""
     south_m, north_m, west_m, east_m = window
     width_m, height_m = east_m - west_m, north_m - south_m
@@ -298,6 +308,7 @@ def _draw_scale(axes: Axes, window: Window) -> None:
 def _line_handles(history: History) -> list[Any]:
     handles: list[Any] = [
         Line2D([], [], color=TRACK_COLOR, marker="s", markersize=5, label="true track, end"),
+        Line2D([], [], color=WHEEL_COLOR, label="wheel tracks"),
         Line2D([], [], color=ARC_COLOR, marker=".", label="selected arcs, as believed"),
         Line2D([], [], color=START_COLOR, marker="o", linestyle="", label="start, heading"),
         Line2D([], [], color=GOAL_COLOR, marker="+", label="goal waydisc"),

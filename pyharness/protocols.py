@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the executive needs of a world. `sim` offers it without knowing of this module."""
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -67,6 +68,24 @@ class Truth(Pose, Protocol):
     def on_map(self) -> bool: ...  # noqa: D102
 
 
+class ExpectedSlip(Protocol):
+    """What slip is expected to add to a commanded motion."""
+
+    @property
+    def north_m(self) -> float: ...  # noqa: D102
+    @property
+    def east_m(self) -> float: ...  # noqa: D102
+    @property
+    def sigma_m(self) -> float:
+        """Standard deviation of the position around the mean."""
+        ...
+
+    @property
+    def yaw_sigma_rad(self) -> float:
+        """Standard deviation of the heading."""
+        ...
+
+
 class World(Protocol):
     """A rover on terrain, moved in steps of one tick."""
 
@@ -90,6 +109,14 @@ class World(Protocol):
         """The commanded part of the arc, 0 to 1."""
         ...
 
+    def slip_ahead(self, length_m: float, heading_change_rad: float) -> ExpectedSlip:
+        """Return what slip is expected to add to an arc from here."""
+        ...
+
+    def sigma_position_after_m(self, distance_m: float) -> float:
+        """Return what the position sigma grows to over so much more motion without a fix."""
+        ...
+
     def start_arc(self, length_m: float, heading_change_rad: float) -> None:
         """Command an arc, or a turn in place."""
         ...
@@ -106,8 +133,19 @@ class World(Protocol):
         """Correct the estimate; False when it finds no fix."""
         ...
 
-    def image(self) -> npt.NDArray[np.float32]:
-        """Return the point cloud [n, 3] seen now, in the rover frame."""
+    def image(self, azimuths_deg: Sequence[float] | None = None) -> npt.NDArray[np.float32]:
+        """Return the point cloud [n, 3] seen now, in the rover frame.
+
+        One pair of images for each azimuth of the mast; where it always looks when None.
+        """
+        ...
+
+    def ground_around(self, radius_m: float) -> npt.NDArray[np.float32]:
+        """Return the true ground within a radius as a point cloud [n, 3] in the rover frame."""
+        ...
+
+    def place(self, north_m: float, east_m: float, yaw_rad: float) -> Truth:
+        """Set the rover down somewhere else."""
         ...
 
     def steering_duration_s(self, curvature_from: float, curvature_to: float) -> float:

@@ -73,15 +73,15 @@ class DriveInfo:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """How a drive ended: `goal_reached`, or the name of a fault and the details."""
+    """How a drive ended: `goal_reached`, `arcs_driven`, `stopped`, or a fault and the details."""
 
     outcome: str
     fault_detail: str = ""
 
     @property
     def is_reached(self) -> bool:
-        """Whether the rover arrived."""
-        return self.outcome == "goal_reached"
+        """Whether the rover did what it was told to."""
+        return self.outcome in ("goal_reached", "arcs_driven")
 
 
 def end_payload(outcome: Outcome) -> bytes:

@@ -21,6 +21,7 @@ from pydantic import (
 
 from pyharness.dp import Kind, Message, new_message
 from pyharness.executive_config import ExecutiveConfig
+from pyharness.messages import Arc, DirectedArc, Pose6, pose_after
 from pyharness.navlib import zone_fault
 from pyharness.params import ParamDefinition, param_table, param_values, params_fault
 from pyharness.records import DriveInfo, Waypoint
@@ -39,6 +40,7 @@ from sim.vehicle import Vehicle, load_vehicle
 
 Place = tuple[float, float]
 ModeName = Literal["unguarded", "guarded", "avoid_koz", "avoid_all"]
+ArcModeName = Literal["unguarded", "guarded"]
 Records = Literal["inputs", "display", "full"]
 Length = Annotated[float, Field(gt=0, le=1e4)]
 
@@ -80,6 +82,20 @@ class WaypointSection(ConfigModel):
     goal_site_m: Place
     radius_m: Annotated[float, Field(ge=0.1, le=100)] = RADIUS_DEFAULT_M
     mode: ModeName = "avoid_all"
+
+
+class ArcSection(ConfigModel):
+    """An arc that is driven as given; its mode says what it is checked against."""
+
+    length_m: Annotated[float, Field(ge=-10, le=10)]  # what evaluate_arc takes
+    heading_change_deg: Annotated[float, Field(ge=-360, le=360)] = 0.0
+    mode: ArcModeName = "guarded"
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.length_m == 0.0 and self.heading_change_deg == 0.0:
+            raise ValueError("an arc needs a length or a heading change")
+        return self
 
 
 class ZoneSection(ConfigModel):
@@ -179,7 +195,9 @@ class Scenario(ConfigModel):
     start: tuple[float, float, float] = (-40.0, 0.0, 0.0)  # north, east, yaw in degrees
     goal: Place | None = None
     mode: ModeName | None = None  # of the goal, or of all waypoints
-    waypoints: Annotated[tuple[WaypointSection, ...], Field(min_length=1)] | None = None
+    waypoints: tuple[WaypointSection, ...] | None = None
+    arcs: tuple[ArcSection, ...] = ()  # driven before the waypoints; without those, alone
+    prior_map_radius_m: Annotated[float, Field(ge=0, le=15)] = 0.0  # known at the start
     zones: Annotated[tuple[ZoneSection, ...], Field(max_length=32)] = ()
     planner: str = "enav"
     navlib: NavlibSection = NavlibSection()
@@ -194,6 +212,8 @@ class Scenario(ConfigModel):
     def _check(self) -> Self:
         if self.waypoints is not None and self.goal is not None:
             raise ValueError("give waypoints or a goal, not both")
+        if self.waypoints == () and not self.arcs:
+            raise ValueError("give at least one waypoint or arc")
         return self
 
 
@@ -209,9 +229,30 @@ def load_scenario(path: Path | None, overrides: Mapping[str, object]) -> Scenari
     Raises:
         ConfigError: With one line for every fault.
     """
+    folder = Path() if path is None else path.parent
+    parts = {key: value for key, value in overrides.items() if key.startswith("vehicle.")}
+    if parts:
+        overrides = {key: value for key, value in overrides.items() if key not in parts}
+        # parts of a vehicle that is named can be set once it is spelled out
+        vehicle = _read(path, overrides).vehicle
+        if isinstance(vehicle, str):
+            spelled_out = _named_vehicle(vehicle, folder, overrides).model_dump(mode="json")
+            overrides = {**overrides, "vehicle": spelled_out}
+        overrides = {**overrides, **parts}
+    return _resolve(_read(path, overrides), folder, overrides)
+
+
+def _read(path: Path | None, overrides: Mapping[str, object]) -> Scenario:
     if path is None:
-        return _resolve(parse_model("", "scenario", Scenario, overrides), Path(), overrides)
-    return _resolve(load_model(path, Scenario, overrides), path.parent, overrides)
+        return parse_model("", "scenario", Scenario, overrides)
+    return load_model(path, Scenario, overrides)
+
+
+def _named_vehicle(name: str, folder: Path, overrides: Mapping[str, object]) -> Vehicle:
+    """Vehicle of a file, or a built-in one."""
+    if not name.endswith((".yaml", ".yml")):
+        return load_vehicle(name)
+    return load_vehicle((Path() if "vehicle" in overrides else folder) / name)
 
 
 def check_places(
@@ -228,13 +269,14 @@ def check_places(
     problems = [
         f"{_place_of(path, overrides, key)}: {_off_terrain(terrain, *place)}"
         for key, place in places.items()
-        if not _is_on_terrain(terrain, *place)
+        if not is_on_terrain(terrain, *place)
     ]
     if problems:
         raise ConfigError(problems)
 
 
-def _is_on_terrain(terrain: Terrain, north_m: float, east_m: float) -> bool:
+def is_on_terrain(terrain: Terrain, north_m: float, east_m: float) -> bool:
+    """Whether a rover can stand there, wheels and belly on ground that is known."""
     return terrain.contains(north_m, east_m, MARGIN_M) and math.isfinite(
         terrain.height_at(north_m, east_m)
     )
@@ -269,17 +311,17 @@ def _resolve(scenario: Scenario, folder: Path, overrides: Mapping[str, object]) 
     terrain_folder = Path() if is_terrain_override else folder
     vehicle = scenario.vehicle
     if isinstance(vehicle, str):
-        vehicle_folder = Path() if "vehicle" in overrides else folder
-        is_file = vehicle.endswith((".yaml", ".yml"))
-        vehicle = load_vehicle(vehicle_folder / vehicle if is_file else vehicle)
+        vehicle = _named_vehicle(vehicle, folder, overrides)
     given = {name: value for name, value in scenario.navlib if value is not None}
     level = {"product_level": PRODUCT_LEVELS[scenario.records]}
     params = param_values({**vehicle_params(vehicle), **level, **given})
     if fault := params_fault(params):
         raise ConfigError([f"navlib: {fault}"])
-    waypoints = scenario.waypoints or (
-        WaypointSection(goal_site_m=scenario.goal or GOAL_DEFAULT_M),
-    )
+    waypoints = scenario.waypoints
+    if waypoints is None:
+        is_directed = scenario.arcs and scenario.goal is None
+        goal = WaypointSection(goal_site_m=scenario.goal or GOAL_DEFAULT_M)
+        waypoints = () if is_directed else (goal,)
     if scenario.mode is not None:
         waypoints = tuple(item.model_copy(update={"mode": scenario.mode}) for item in waypoints)
     return scenario.model_copy(
@@ -363,8 +405,20 @@ def make_terrain(scenario: Scenario) -> Terrain:
 
 
 def drive_info(scenario: Scenario) -> DriveInfo:
-    """Return what the record stream does not say about a resolved scenario."""
+    """Return what the record stream does not say about a resolved scenario.
+
+    A drive of arcs alone goes to where they lead.
+    """
     north_m, east_m, yaw_deg = scenario.start
+    waypoints = tuple(
+        Waypoint(*item.goal_site_m, item.radius_m, item.mode) for item in scenario.waypoints or ()
+    )
+    if not waypoints:
+        pose = Pose6(north_m, east_m, 0.0, 0.0, 0.0, math.radians(yaw_deg))
+        for directed in directed_arcs(scenario):
+            pose = pose_after(pose, directed.arc)
+        mode = scenario.arcs[-1].mode
+        waypoints = (Waypoint(pose.x_m, pose.y_m, RADIUS_DEFAULT_M, mode),)
     return DriveInfo(
         name=scenario.name,
         planner=scenario.planner if ":" not in scenario.planner else Path(scenario.planner).name,
@@ -372,10 +426,15 @@ def drive_info(scenario: Scenario) -> DriveInfo:
         start_north_m=north_m,
         start_east_m=east_m,
         start_yaw_rad=math.radians(yaw_deg),
-        waypoints=tuple(
-            Waypoint(*item.goal_site_m, item.radius_m, item.mode)
-            for item in scenario.waypoints or ()
-        ),
+        waypoints=waypoints,
+    )
+
+
+def directed_arcs(scenario: Scenario) -> tuple[DirectedArc, ...]:
+    """Return the arcs that are driven as given."""
+    return tuple(
+        DirectedArc(Arc(item.length_m, math.radians(item.heading_change_deg)), item.mode)
+        for item in scenario.arcs
     )
 
 

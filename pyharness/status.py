@@ -21,6 +21,7 @@ Mode = _enumeration("Mode", "nav_mode_t", "NAV_MODE_", "NAV_MODE_COUNT")
 Activity = _enumeration("Activity", "nav_host_activity_t", "NAV_HOST_", "NAV_HOST_ACTIVITY_COUNT")
 ZoneKind = _enumeration("ZoneKind", "nav_zone_kind_t", "NAV_ZONE_")
 ZoneShape = _enumeration("ZoneShape", "nav_zone_shape_t", "NAV_ZONE_")
+HostEvr = _enumeration("HostEvr", "nav_host_evr_id_t", "NAV_HOST_EVR_", "NAV_HOST_EVR_COUNT")
 Severity = _enumeration("Severity", "nav_evr_severity_t", "NAV_EVR_")
 
 

@@ -32,12 +32,18 @@ class StuckWatch:
         self._nearest_m = math.inf
         self._without_progress_m = 0.0
 
-    def arc_finished(self, commanded: Arc, pose: Pose, goal: Waypoint) -> str | None:
-        """Take in one arc; return why the drive counts as stuck, or None."""
+    def arc_finished(self, commanded: Arc, pose: Pose, goal: Waypoint | None) -> str | None:
+        """Take in one arc; return why the drive counts as stuck, or None.
+
+        Without a goal only slip counts.
+        """
         moved_m = 0.0
         if self._place is not None:
             moved_m = math.hypot(pose.x_m - self._place[0], pose.y_m - self._place[1])
-        return self._slipping(abs(commanded.length_m), moved_m) or self._wandering(
+        reason = self._slipping(abs(commanded.length_m), moved_m)
+        if reason is not None or goal is None:
+            return reason
+        return self._wandering(
             abs(commanded.length_m) + self._turned_m(commanded), distance_m(pose, goal)
         )
 

@@ -26,7 +26,7 @@ def param_rows() -> list[Row]:
 
 
 def evr_rows() -> list[Row]:
-    """Return one row per event report."""
+    """Return one row per event report, Navlib's before the executive's."""
     return [
         {
             "id": row.evr_id,

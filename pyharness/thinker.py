@@ -2,7 +2,7 @@
 """The executive's calls to the planner: each answers, and says how long the rover thinks."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,10 +10,9 @@ import numpy.typing as npt
 
 from pyharness import messages
 from pyharness.dp import Message
-from pyharness.executive_config import ComputeTimes, PoseUncertainty
+from pyharness.executive_config import ComputeTimes
 from pyharness.messages import Arc, Pose6, Uncertainty
 from pyharness.planner import Planner
-from pyharness.protocols import Estimate
 from pyharness.records import Waypoint
 from pyharness.status import Reason, Status, status_text
 
@@ -35,19 +34,38 @@ class Image:
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """What select_arc answered: an arc, or none and the rejections by reason."""
+    """What select_arc answered.
+
+    Attributes:
+        arc: What to drive next; None when no path was found.
+        rejections: How many candidates were rejected, by reason.
+        mode: In which it was selected.
+        is_leaving: Whether only the leave limits let a path pass.
+    """
 
     arc: Arc | None
-    rejections: str
+    rejections: Mapping[Reason, int]
+    mode: str
     is_leaving: bool = False
+
+    @property
+    def main_reason(self) -> Reason:
+        """The most frequent reason, cost aside."""
+        return max(
+            (reason for reason in self.rejections if reason != Reason.COST),
+            key=lambda reason: self.rejections[reason],
+            default=Reason.NONE,
+        )
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What evaluate_arc answered."""
+    """What evaluate_arc answered; when unsafe, why and how far along, m or rad."""
 
     is_safe: bool
     text: str
+    reason: Reason = Reason.NONE
+    failing_at: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,13 +103,17 @@ class Thinker:
         answer = self._ask(self.planner.select_arc, "select_arc", request, accepted)
         duration_s = self.times.select_base_s
         duration_s += self.times.select_per_evaluation_s * int(answer["ace_evaluations"])
-        rejections = describe_rejections(answer["rejections"])
+        rejections = {
+            reason: int(answer["rejections"][reason])
+            for reason in Reason
+            if reason != Reason.NONE and answer["rejections"][reason]
+        }
         if answer["status"] == Status.NO_PATH:
-            return Selection(None, rejections), duration_s
+            return Selection(None, rejections, goal.mode), duration_s
         arc = Arc(float(answer["arc"]["length_m"]), float(answer["arc"]["heading_change_rad"]))
         if arc.is_empty or not math.isfinite(arc.length_m + arc.heading_change_rad):
             raise PlannerFaultError(f"select_arc answered an arc that leads nowhere: {arc}")
-        return Selection(arc, rejections, bool(answer["is_leaving"])), duration_s
+        return Selection(arc, rejections, goal.mode, bool(answer["is_leaving"])), duration_s
 
     def evaluate(
         self,
@@ -100,7 +122,7 @@ class Thinker:
         uncertainty: Uncertainty,
         arc: Arc,
         mode: str,
-        is_leaving: bool,
+        is_leaving: bool = False,
     ) -> tuple[Verdict, float]:
         """Have an arc evaluated; return the verdict and the compute time."""
         request = messages.evaluate_request(time_s, pose, uncertainty, arc, mode, is_leaving)
@@ -108,13 +130,15 @@ class Thinker:
         duration_s = self.times.evaluate_base_s
         duration_s += self.times.evaluate_per_pose_s * int(answer["pose_count"])
         if answer["is_safe"]:
-            return Verdict(True, f"evaluate_arc at {time_s:.3f} s said safe"), duration_s
-        reason = Reason(int(answer["reason"])).name.lower()
+            return Verdict(
+                True, f"evaluate_arc at {time_s:.3f} s in mode {mode} said safe"
+            ), duration_s
+        reason, failing_at = Reason(int(answer["reason"])), float(answer["failing_at"])
         text = (
-            f"evaluate_arc at {time_s:.3f} s said unsafe: {reason} at pose"
-            f" {int(answer['failing_index'])}, {float(answer['failing_at']):.2f} m or rad along"
+            f"evaluate_arc at {time_s:.3f} s in mode {mode} said unsafe: {reason.name.lower()}"
+            f" at pose {int(answer['failing_index'])}, {failing_at:.2f} m or rad along"
         )
-        return Verdict(False, text), duration_s
+        return Verdict(False, text, reason, failing_at), duration_s
 
     @staticmethod
     def _ask(
@@ -133,25 +157,7 @@ class Thinker:
         return answer
 
 
-def describe_rejections(counts: Iterable[int]) -> str:
-    """Return `reason count, ...` for the reasons that occurred, the most frequent first."""
-    named = [(int(count), Reason(index).name.lower()) for index, count in enumerate(counts)]
-    used = sorted((-count, name) for count, name in named if count and name != "none")
-    return ", ".join(f"{name} {-count}" for count, name in used) or "none"
-
-
-def planning_uncertainty(
-    config: PoseUncertainty, estimate: Estimate, since_fix_m: float, remaining_m: float
-) -> Uncertainty:
-    """Return the uncertainty of the pose that the rover will have at the end of its arc.
-
-    Relative to the map: the error of the last fix, the motion since then, and how far the rover may
-    leave the arc in the part that is still ahead.
-    """
-    position_m = config.position_base_m + config.local_sigmas * estimate.sigma_local_m
-    yaw_deg = config.yaw_base_deg + config.yaw_per_m_deg * (since_fix_m + remaining_m)
-    return Uncertainty(
-        position_m=position_m + config.deviation_per_m * remaining_m,
-        yaw_rad=math.radians(yaw_deg),
-        global_position_m=config.global_sigmas * estimate.sigma_position_m,
-    )
+def describe_rejections(rejections: Mapping[Reason, int]) -> str:
+    """Return `reason count, ...`, the most frequent first."""
+    ranked = sorted((-count, reason.name.lower()) for reason, count in rejections.items())
+    return ", ".join(f"{name} {-count}" for count, name in ranked) or "none"

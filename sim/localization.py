@@ -104,10 +104,17 @@ class Localization:
             roll_rad=truth.roll_rad + self._roll_error,
             pitch_rad=truth.pitch_rad + self._pitch_error,
             yaw_rad=truth.yaw_rad + self._yaw_error,
-            sigma_position_m=math.sqrt(_largest_variance(self._covariance) + local_m**2),
+            sigma_position_m=self.sigma_position_after_m(0.0),
             sigma_local_m=local_m,
             sigma_yaw_rad=math.sqrt(self._covariance[2, 2]),
         )
+
+    def sigma_position_after_m(self, distance_m: float) -> float:
+        """What `sigma_position_m` grows to over so much more motion without a fix."""
+        if not self._config.enabled:
+            return 0.0
+        local_m = self._config.odometry_sigma_fraction * (self._fix_distance_m + distance_m)
+        return math.sqrt(_largest_variance(self._covariance) + local_m**2)
 
     def move(self, truth: SettledState, north_m: float, east_m: float, elapsed_s: float) -> None:
         """Follow one step: the commanded motion as the wheels felt it, the attitude of the IMU.

@@ -199,12 +199,16 @@ def _guess_struct(guess: SettledState | None) -> Any:
     return ffi.new(
         "sim_settled_t *",
         {
+            "x_m": guess.x_m,
+            "y_m": guess.y_m,
+            "yaw_rad": guess.yaw_rad,
             "z_m": guess.z_m,
             "roll_rad": guess.roll_rad,
             "pitch_rad": guess.pitch_rad,
             "rocker_rad": guess.rocker_rad,
             "bogie_left_rad": guess.bogie_left_rad,
             "bogie_right_rad": guess.bogie_right_rad,
+            "contact_site_m": guess.contact_site_m.tolist(),
         },
     )
 

@@ -8,6 +8,7 @@ a tilt comes from a table, or from a Gaussian around it; yaw slip is a Brownian 
 
 import math
 from bisect import bisect_right
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -95,6 +96,23 @@ class SlippedStep:
     slip: float
 
 
+@dataclass(frozen=True, slots=True)
+class ExpectedSlip:
+    """What slip is expected to add to a commanded motion.
+
+    Attributes:
+        north_m: Mean of what it adds northward.
+        east_m: And eastward.
+        sigma_m: Standard deviation of the position around that mean.
+        yaw_sigma_rad: Standard deviation of the heading.
+    """
+
+    north_m: float
+    east_m: float
+    sigma_m: float
+    yaw_sigma_rad: float
+
+
 class SlipModel:
     """Turns commanded steps into actual ones."""
 
@@ -131,11 +149,56 @@ class SlipModel:
         if not self._config.enabled:
             return SlippedStep(north_m, east_m, 0.0, 0.0)
         self._advance(wheel_path_m)
-        uphill_north, uphill_east, tilt_rad = _uphill(*attitude_rad)
         table = self._tables[class_number]
+        eta = self._eta if self._config.mode == "gaussian" else 0.0
+        added_north_m, added_east_m, slip = self._added(
+            motion_m, wheel_path_m, attitude_rad, lambda tilt_rad: _factor(table, tilt_rad, eta)
+        )
+        sigma_rad = math.radians(self._config.yaw_sigma_deg_sqrt_m)
+        return SlippedStep(
+            north_m + added_north_m,
+            east_m + added_east_m,
+            sigma_rad * math.sqrt(wheel_path_m) * float(self._rng.standard_normal()),
+            slip,
+        )
+
+    def expect(
+        self,
+        motion_m: tuple[float, float],
+        wheel_path_m: float,
+        attitude_rad: tuple[float, float, float],
+        class_number: int = 0,
+    ) -> ExpectedSlip:
+        """What `step` will add to such a motion on ground of this attitude; draws nothing."""
+        if not self._config.enabled:
+            return ExpectedSlip(0.0, 0.0, 0.0, 0.0)
+        table = self._tables[class_number]
+        north_m, east_m, _ = self._added(
+            motion_m, wheel_path_m, attitude_rad, lambda tilt_rad: _factor(table, tilt_rad, 0.0)
+        )
+        sigma_m = 0.0
+        if self._config.mode == "gaussian":
+            # slip is linear in the one number that is drawn: its sigma is the slip of the sigmas
+            spread = self._added(
+                motion_m, wheel_path_m, attitude_rad, lambda tilt_rad: table.at(tilt_rad)[1]
+            )
+            sigma_m = math.hypot(spread[0], spread[1])
+        yaw_sigma_rad = math.radians(self._config.yaw_sigma_deg_sqrt_m) * math.sqrt(wheel_path_m)
+        return ExpectedSlip(north_m, east_m, sigma_m, yaw_sigma_rad)
+
+    def _added(
+        self,
+        motion_m: tuple[float, float],
+        wheel_path_m: float,
+        attitude_rad: tuple[float, float, float],
+        factor: Callable[[float], float],
+    ) -> tuple[float, float, float]:
+        """North and east that slip adds to a motion, and the slip along it; factor by tilt."""
+        north_m, east_m = motion_m
+        uphill_north, uphill_east, tilt_rad = _uphill(*attitude_rad)
         # on the level the whole slip holds back; of what the slope adds, the part along the motion
-        level = self._factor(table, 0.0)
-        added = self._factor(table, tilt_rad) - level
+        level = factor(0.0)
+        added = factor(tilt_rad) - level
         length_m = math.hypot(north_m, east_m)
         along, across = 0.0, 1.0
         if length_m > 0.0:
@@ -143,11 +206,9 @@ class SlipModel:
             across = math.sqrt(max(0.0, 1.0 - along * along)) if tilt_rad > 0.0 else 0.0
         slip = min(max(level + added * along, SLIP_MIN), SLIP_MAX)
         drift_m = self._config.lateral_share * added * across * wheel_path_m
-        sigma_rad = math.radians(self._config.yaw_sigma_deg_sqrt_m)
-        return SlippedStep(
-            north_m * (1.0 - slip) - drift_m * uphill_north,
-            east_m * (1.0 - slip) - drift_m * uphill_east,
-            sigma_rad * math.sqrt(wheel_path_m) * float(self._rng.standard_normal()),
+        return (
+            -slip * north_m - drift_m * uphill_north,
+            -slip * east_m - drift_m * uphill_east,
             slip if length_m > 0.0 else 0.0,
         )
 
@@ -158,10 +219,10 @@ class SlipModel:
             self._draw_end_m += DRAW_DISTANCE_M
         self._distance_m += wheel_path_m
 
-    def _factor(self, table: SlipTable, tilt_rad: float) -> float:
-        mean, sigma = table.at(tilt_rad)
-        eta = self._eta if self._config.mode == "gaussian" else 0.0
-        return min(max(mean + sigma * eta, SLIP_MIN), SLIP_MAX)
+
+def _factor(table: SlipTable, tilt_rad: float, eta: float) -> float:
+    mean, sigma = table.at(tilt_rad)
+    return min(max(mean + sigma * eta, SLIP_MIN), SLIP_MAX)
 
 
 def _uphill(roll_rad: float, pitch_rad: float, yaw_rad: float) -> tuple[float, float, float]:

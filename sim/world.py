@@ -9,11 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from sim.camera import CameraConfig, StereoCamera
+from sim.frames import rotation
 from sim.kinematics import Arc, duration_s, pose_along, steering_duration_s, wheel_path_m
 from sim.localization import Localization, NoiseConfig, PoseEstimate
 from sim.random_streams import rng_for
 from sim.settle import SettledState, Settler
-from sim.slip import SlipConfig, SlipModel
+from sim.slip import ExpectedSlip, SlipConfig, SlipModel
 from sim.terrain import Terrain
 from sim.vehicle import Vehicle
 
@@ -74,9 +75,9 @@ class World:
         # what slip has added to the commanded pose since the start of the arc
         self._offset = (0.0, 0.0, 0.0)
         self._truth = self._settled_at(*start, slip=0.0)
-        self._localization = Localization(
-            noise or NoiseConfig(), self._truth, rng_for(seed, "localization")
-        )
+        self._noise = noise or NoiseConfig()
+        self._localization_rng = rng_for(seed, "localization")
+        self._localization = Localization(self._noise, self._truth, self._localization_rng)
 
     # -------------------------------------------------------------- state
 
@@ -110,6 +111,26 @@ class World:
     def expected_slip(self, tilt_rad: float) -> float:
         """Mean slip of the present terrain class when driving up a slope."""
         return self._slip.expected(tilt_rad, self._class_number(self._truth))
+
+    def sigma_position_after_m(self, distance_m: float) -> float:
+        """What the estimate's position sigma grows to over so much more motion without a fix."""
+        return self._localization.sigma_position_after_m(distance_m)
+
+    def slip_ahead(self, length_m: float, heading_change_rad: float) -> ExpectedSlip:
+        """What slip is expected to add to an arc from here, on ground like that under the rover.
+
+        From what the rover knows: its estimated attitude and the class of the ground it is on.
+        """
+        here, arc = self.estimate, Arc(length_m, heading_change_rad)
+        start = (0.0, 0.0, here.yaw_rad)
+        north_m, east_m, _ = pose_along(start, arc, 1.0)
+        middle_yaw_rad = here.yaw_rad + 0.5 * heading_change_rad
+        return self._slip.expect(
+            (north_m, east_m),
+            wheel_path_m(arc, self.vehicle),
+            (here.roll_rad, here.pitch_rad, middle_yaw_rad),
+            self._class_number(self._truth),
+        )
 
     # -------------------------------------------------------------- commands
 
@@ -186,7 +207,26 @@ class World:
         self._localization.move(self._truth, north_m, east_m, 1.0 / STEPS_PER_SECOND)
         return self._truth
 
+    def place(self, north_m: float, east_m: float, yaw_rad: float) -> TruthState:
+        """Set the rover down somewhere else, with the pose known as well as at the start."""
+        self._motion = None
+        self._truth = self._settled_at(north_m, east_m, yaw_rad, slip=0.0)
+        self._localization = Localization(self._noise, self._truth, self._localization_rng)
+        return self._truth
+
     # -------------------------------------------------------------- sensors
+
+    def ground_around(self, radius_m: float) -> npt.NDArray[np.float32]:
+        """True ground within a radius, as a cloud in the estimated rover frame: a perfect map."""
+        here = self.estimate
+        terrain = self.terrain
+        north_m, east_m = np.meshgrid(terrain.north_m, terrain.east_m, indexing="ij")
+        north_m, east_m = north_m - here.x_m, east_m - here.y_m
+        down_m = terrain.z_site_m - here.z_m
+        chosen = (np.hypot(north_m, east_m) <= radius_m) & np.isfinite(down_m)
+        site_m = np.stack([north_m[chosen], east_m[chosen], down_m[chosen]], axis=-1)
+        to_site = rotation(here.roll_rad, here.pitch_rad, here.yaw_rad)
+        return np.ascontiguousarray(site_m @ to_site, dtype=np.float32)
 
     def visual_odometry(self) -> bool:
         """Fix the estimate by visual odometry; False when it failed."""

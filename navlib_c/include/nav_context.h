@@ -25,9 +25,10 @@ typedef struct
     nav_kioz_t kioz;
     nav_heightmap_t heightmap;
     nav_surface_t surface;
+    nav_surface_state_t surface_state;
     nav_costmap_t costmap;
+    nav_costmap_state_t costmap_state;
     nav_relief_t relief;
-    nav_costmap_scratch_t scratch;
     nav_global_t global;
     nav_tree_t tree;
     nav_tree_shapes_t tree_shapes;

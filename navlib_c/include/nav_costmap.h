@@ -53,15 +53,21 @@ typedef struct
     double zz;
 } nav_moments_t;
 
-/** Blocks (costmap cells) along one side that the surface touches. */
-#define NAV_COSTMAP_BLOCKS ((NAV_HEIGHTMAP_SIZE / NAV_CELLS_PER_COST_CELL) + 1)
-
-/** Working memory of an update; holds nothing between calls. */
+/**
+ * What is kept from one update to the next, so that only what changed is computed again. Blocks and
+ * strips stand as in nav_surface_state_t.
+ */
 typedef struct
 {
-    nav_moments_t blocks[NAV_COSTMAP_BLOCKS];                      /* of one row */
-    nav_moments_t strips[NAV_COSTMAP_BLOCKS * NAV_COSTMAP_BLOCKS]; /* a patch wide, a block high */
-} nav_costmap_scratch_t;
+    nav_moments_t blocks[NAV_BLOCKS];
+    nav_moments_t strips[NAV_BLOCKS];      /* a patch wide, a block high */
+    uint8_t is_strip_new[NAV_BLOCKS];      /* in this update */
+    uint32_t fitted_at[NAV_COSTMAP_CELLS]; /* surface_count when the cell was last recomputed */
+    double z_reference_m;   /* heights are taken from here, to keep their squares small */
+    uint32_t surface_count; /* of the last surface seen; 0: none */
+    int32_t origin_row;     /* of the map in the last update */
+    int32_t origin_col;
+} nav_costmap_state_t;
 
 /** Empties the map and takes its cell size. */
 void nav_costmap_init(nav_costmap_t *map, const nav_params_t *params);
@@ -77,17 +83,25 @@ bool nav_costmap_recenter(nav_costmap_t *map,
                           double y_site_m);
 
 /**
- * Recomputes every cell that lies wholly on the surface, opens cells closed by ACE for longer than
- * ace_feedback_cycles, and applies the zones with the margin to all cells. Adds one to cycle.
- * A recomputed cell with too little known ground in its patch is unknown, whatever it was before:
- * so expired ground is forgotten. What lies off the surface counts as unknown.
+ * Recomputes the cells that lie wholly on the surface. A recomputed cell with too little known ground in
+ * its patch is unknown, whatever it was before: so expired ground is forgotten. What lies off the surface
+ * counts as unknown. Only cells are recomputed in whose patch the surface changed since the last update;
+ * the outcome is that of recomputing all. An empty state makes it recompute all.
  */
 void nav_costmap_update(nav_costmap_t *map,
-                        nav_costmap_scratch_t *scratch,
+                        nav_costmap_state_t *state,
                         const nav_params_t *params,
                         const nav_surface_t *surface,
-                        const nav_kioz_t *kioz,
-                        double zone_margin_m);
+                        const nav_surface_state_t *changes);
+
+/**
+ * Begins a cycle: adds one to cycle, opens cells closed by ACE for longer than ace_feedback_cycles, and
+ * applies the zones with the margin to all cells.
+ */
+void nav_costmap_mark(nav_costmap_t *map,
+                      const nav_params_t *params,
+                      const nav_kioz_t *kioz,
+                      double zone_margin_m);
 
 /** Index of the cell a position falls in. @return false, *index = 0, outside the map */
 bool nav_costmap_find(const nav_costmap_t *map, double x_site_m, double y_site_m, uint32_t *index);

@@ -14,22 +14,38 @@
 
 /** Cost of what cannot be reached, s. */
 #define NAV_COST_INFINITE 1.0e12
+/** Cost of blocked ground, s/m: any edge to it costs more than what cannot be reached. */
+#define NAV_COST_BLOCKED_S_PER_M 1.0e30
 
+/** The costmap's cells with a border of blocked ones, so that every cell has eight neighbours. */
+#define NAV_GLOBAL_SIZE (NAV_COSTMAP_SIZE + 2)
+#define NAV_GLOBAL_NODES (NAV_GLOBAL_SIZE * NAV_GLOBAL_SIZE)
+
+/** Lists of nodes in work, each for an interval of cost, and one for all beyond. */
+#ifndef NAV_GLOBAL_BUCKETS
+#define NAV_GLOBAL_BUCKETS 256
+#endif
+#define NAV_GLOBAL_LINKS (NAV_GLOBAL_NODES + NAV_GLOBAL_BUCKETS + 1)
+
+/** A node is a costmap cell or border; that of row and column stands at (row + 1), (column + 1). */
 typedef struct
 {
-    double cost_to_go_s[NAV_COSTMAP_CELLS]; /* NAV_COST_INFINITE where unreachable */
-    double cost_s_per_m[NAV_COSTMAP_CELLS]; /* of the last plan; NAV_COST_INFINITE where blocked */
-    uint32_t heap[NAV_COSTMAP_CELLS];       /* cells; a binary heap on cost_to_go_s */
-    uint32_t
-        heap_place[NAV_COSTMAP_CELLS]; /* where a cell stands in the heap, 1-based; 0: not in it */
-    uint32_t heap_count;
+    double cost_to_go_s[NAV_GLOBAL_NODES]; /* NAV_COST_INFINITE where unreachable */
+    double
+        cost_s_per_m[NAV_GLOBAL_NODES]; /* of the last plan; NAV_COST_BLOCKED_S_PER_M if blocked */
+    int32_t next[NAV_GLOBAL_LINKS];     /* rings; behind the nodes stand the heads of the lists */
+    int32_t previous[NAV_GLOBAL_LINKS];
+    double first_s;          /* where the interval of the first list begins */
+    double buckets_per_s;    /* 1 / length of an interval, half the least edge at most */
+    int32_t bucket;          /* all before it are empty */
     uint32_t is_goal_inside; /* of the last plan */
 } nav_global_t;
 
 /**
  * Computes cost_to_go_s for a goal, blocked by terrain and/or zones. Cells inside the waydisc cost
  * nothing to go; if none of them is free, the free cell nearest to its centre is the seed.
- * Ties are broken by cell index: the result does not depend on the order of work.
+ * The costs are the one solution of cost = least of (neighbour's cost + edge), to the last bit: they do
+ * not depend on the order of work.
  */
 void nav_global_plan(nav_global_t *global,
                      const nav_costmap_t *map,

@@ -21,6 +21,14 @@ typedef struct
     uint32_t point_count; /* 0: unknown; saturates, later points are left out */
 } nav_height_cell_t;
 
+/**
+ * Blocks along one side: squares of NAV_CELLS_PER_COST_CELL cells, on the lines of the costmap, of which
+ * the map touches this many at most. A block stands in tables at its global index (that of its cells
+ * divided by their number, rounded down) modulo this.
+ */
+#define NAV_BLOCKS_SIDE ((NAV_HEIGHTMAP_SIZE / NAV_CELLS_PER_COST_CELL) + 1)
+#define NAV_BLOCKS (NAV_BLOCKS_SIDE * NAV_BLOCKS_SIDE)
+
 typedef struct
 {
     double cell_m;
@@ -28,6 +36,7 @@ typedef struct
     int32_t origin_col; /* global index of the westernmost column */
     uint32_t is_placed; /* 0 until first centred */
     nav_height_cell_t cells[NAV_HEIGHTMAP_CELLS];
+    uint8_t is_changed[NAV_BLOCKS]; /* 1 when the block changed since the last surface */
 } nav_heightmap_t;
 
 /** Surface height of an unknown cell: nothing on Mars is this deep. */
@@ -41,6 +50,29 @@ typedef struct
     S(int32_t, origin_col, "1", "global index of the westernmost column")                          \
     A(float, z_site_m, NAV_HEIGHTMAP_CELLS, "m", "down, row by row from south; 1e9 where unknown")
 NAV_RECORD(NAV_SURFACE_FIELDS, nav_surface_t);
+
+/** What lies in a block before gaps are closed. */
+typedef struct
+{
+    double oldest_s;    /* time of its oldest height */
+    uint32_t gap_count; /* cells of unknown height */
+} nav_surface_block_t;
+
+/** Cells along one side of the heightmap with a border of unknown ones. */
+#define NAV_RAW_SIZE (NAV_HEIGHTMAP_SIZE + 2)
+
+/**
+ * What is kept from one surface to the next, so that only what changed is made again. Users of a surface
+ * that keep results of their own remember surface_count, and renew those for which changed_at is
+ * greater.
+ */
+typedef struct
+{
+    uint32_t surface_count;          /* surfaces made so far */
+    uint32_t changed_at[NAV_BLOCKS]; /* surface_count when the block was last made */
+    nav_surface_block_t blocks[NAV_BLOCKS];
+    float z_m[NAV_RAW_SIZE * NAV_RAW_SIZE]; /* SITE, unwrapped, before gaps are closed */
+} nav_surface_state_t;
 
 /** What became of the points of a chunk; a point for a full cell counts as neither. */
 typedef struct
@@ -61,7 +93,7 @@ bool nav_heightmap_center(nav_heightmap_t *map, double x_site_m, double y_site_m
 
 /**
  * Merges points given in ROVER at the pose. The points must be finite (the interface has checked).
- * Points outside the map are counted and dropped.
+ * Points outside the map are counted and dropped. Which cell takes a point is decided to 1e-12 cells.
  */
 nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
                                 const nav_pose_t *pose,
@@ -70,10 +102,19 @@ nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
                                 const nav_point_t *points,
                                 uint32_t point_count);
 
-/** Makes the surface: means, expired cells unknown, gaps with enough known neighbours closed. */
-void nav_heightmap_surface(const nav_heightmap_t *map,
+/** Where a block stands in tables, given the global indices of one of its cells. */
+int32_t nav_heightmap_block(int32_t row, int32_t col);
+
+/**
+ * Makes the surface: means, expired cells unknown, gaps with enough known neighbours closed. Only blocks
+ * are made anew whose map changed since the last surface, by points, by expiry, by rolling, and those
+ * beside them; the outcome is that of making all. Surface and state stay together: both are those of the
+ * call before, or the state is empty.
+ */
+void nav_heightmap_surface(nav_heightmap_t *map,
                            const nav_params_t *params,
                            double time_s,
+                           nav_surface_state_t *state,
                            nav_surface_t *surface);
 
 #endif

@@ -24,9 +24,13 @@ typedef struct
     nav_relief_cell_t cells[NAV_COSTMAP_CELLS]; /* in the order of the costmap's */
 } nav_relief_t;
 
-/** Takes the relief of every costmap cell from the surface and from the planes of the same update. */
+/**
+ * Takes the relief of the costmap cells that lie wholly on the surface from it and from their planes: of
+ * those only that the last update of the costmap has recomputed; the others keep what they have.
+ */
 void nav_relief_update(nav_relief_t *relief,
                        const nav_costmap_t *costmap,
+                       const nav_costmap_state_t *state,
                        const nav_surface_t *surface);
 
 #endif

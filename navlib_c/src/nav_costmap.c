@@ -16,20 +16,25 @@
 #define NAV_BLOCK ((int32_t) NAV_CELLS_PER_COST_CELL)
 #define NAV_CELLS (NAV_SIZE * NAV_SIZE)
 #define NAV_SURFACE_SIZE ((int32_t) NAV_HEIGHTMAP_SIZE)
-#define NAV_SURFACE_CELLS (NAV_SURFACE_SIZE * NAV_SURFACE_SIZE)
-#define NAV_BLOCKS ((NAV_SURFACE_SIZE / NAV_BLOCK) + 1)
+
+/* The reference of heights is a multiple of this: it hardly ever changes. */
+#define NAV_REFERENCE_STEP_M 128.0
+#define NAV_SIDE ((int32_t) NAV_BLOCKS_SIDE)
 #define NAV_FAILED_COUNT_MAX 65535U
 
 /* Known cells on one line leave a determinant of rounding errors only. */
 #define NAV_SINGULAR_SHARE 1.0e-9
 
-/* The blocks of a surface: all indices are in blocks, from the first one it touches. */
+/* The blocks of a surface: row and column 0 are those of its corner. */
 typedef struct
 {
     const nav_surface_t *surface;
-    double z_reference_m; /* heights are taken from here, to keep their squares small */
-    int32_t first_row;    /* global index of the first block, in costmap cells */
+    const nav_surface_state_t *changes;
+    uint32_t seen_count; /* blocks with a greater number changed; 0: all */
+    int32_t first_row;   /* global index of the first block, in costmap cells */
     int32_t first_col;
+    int32_t table_row; /* where the first row stands in tables */
+    int32_t table_col;
     int32_t patch_half; /* blocks to either side of the middle one */
 } nav_window_t;
 
@@ -51,20 +56,37 @@ static bool is_known(float z_m)
     return (z_m > -NAV_SURFACE_UNKNOWN_M) && (z_m < NAV_SURFACE_UNKNOWN_M);
 }
 
+/* Of the first known height among one in each block, rounded: a function of the surface alone. */
 static double reference_height(const nav_surface_t *surface)
 {
     double z_m = 0.0;
     bool is_found = false;
 
-    for (int32_t cell = 0; (cell < NAV_SURFACE_CELLS) && (!is_found); cell++)
+    for (int32_t row = 0; (row < NAV_SURFACE_SIZE) && (!is_found); row += NAV_BLOCK)
     {
-        is_found = is_known(surface->z_site_m[cell]);
-        if (is_found)
+        for (int32_t col = 0; (col < NAV_SURFACE_SIZE) && (!is_found); col += NAV_BLOCK)
         {
-            z_m = (double) surface->z_site_m[cell];
+            const float first_m = surface->z_site_m[(row * NAV_SURFACE_SIZE) + col];
+
+            is_found = is_known(first_m);
+            z_m = is_found ? (double) first_m : 0.0;
         }
     }
-    return z_m;
+    return NAV_REFERENCE_STEP_M * floor(z_m / NAV_REFERENCE_STEP_M);
+}
+
+static int32_t table_index(const nav_window_t *window, int32_t row, int32_t col)
+{
+    const int32_t table_row = window->table_row + row;
+    const int32_t table_col = window->table_col + col;
+
+    return (((table_row < NAV_SIDE) ? table_row : (table_row - NAV_SIDE)) * NAV_SIDE) +
+           ((table_col < NAV_SIDE) ? table_col : (table_col - NAV_SIDE));
+}
+
+static bool is_changed(const nav_window_t *window, int32_t block)
+{
+    return window->changes->changed_at[block] > window->seen_count;
 }
 
 static void add_height(nav_moments_t *sum, double u, double v, double z)
@@ -96,85 +118,138 @@ static void add_moved(nav_moments_t *total, const nav_moments_t *part, double u,
     total->zz += part->zz;
 }
 
-/* Sums of one row of heightmap cells into the blocks they lie in. */
-static void add_surface_row(const nav_window_t *window, int32_t row, nav_moments_t *blocks)
+static nav_moments_t sum_block(const nav_window_t *window,
+                               double z_reference_m,
+                               int32_t block_row,
+                               int32_t block_col)
 {
-    const float *z_m = &window->surface->z_site_m[row * NAV_SURFACE_SIZE];
     const double middle = ((double) NAV_BLOCK - 1.0) / 2.0;
-    const double u = (double) nav_wrap_index(window->surface->origin_row + row, NAV_BLOCK) - middle;
-    int32_t in_block = nav_wrap_index(window->surface->origin_col, NAV_BLOCK);
-    int32_t block = 0;
+    const int32_t first_row =
+        ((window->first_row + block_row) * NAV_BLOCK) - window->surface->origin_row;
+    const int32_t first_col =
+        ((window->first_col + block_col) * NAV_BLOCK) - window->surface->origin_col;
+    nav_moments_t sum = {0};
 
-    for (int32_t col = 0; col < NAV_SURFACE_SIZE; col++)
+    for (int32_t row = 0; row < NAV_BLOCK; row++)
     {
-        if (is_known(z_m[col]))
+        for (int32_t col = 0; col < NAV_BLOCK; col++)
         {
-            add_height(&blocks[block], u, (double) in_block - middle,
-                       (double) z_m[col] - window->z_reference_m);
+            const int32_t at_row = first_row + row;
+            const int32_t at_col = first_col + col;
+
+            if ((at_row >= 0) && (at_row < NAV_SURFACE_SIZE) && (at_col >= 0) &&
+                (at_col < NAV_SURFACE_SIZE))
+            {
+                const float z_m = window->surface->z_site_m[(at_row * NAV_SURFACE_SIZE) + at_col];
+
+                if (is_known(z_m))
+                {
+                    add_height(&sum, (double) row - middle, (double) col - middle,
+                               (double) z_m - z_reference_m);
+                }
+            }
         }
-        in_block += 1;
-        if (in_block == NAV_BLOCK)
+    }
+    return sum;
+}
+
+static void sum_blocks(const nav_window_t *window, nav_costmap_state_t *state)
+{
+    for (int32_t row = 0; row < NAV_SIDE; row++)
+    {
+        for (int32_t col = 0; col < NAV_SIDE; col++)
         {
-            in_block = 0;
-            block += 1;
+            const int32_t block = table_index(window, row, col);
+
+            if (is_changed(window, block))
+            {
+                state->blocks[block] = sum_block(window, state->z_reference_m, row, col);
+            }
         }
     }
 }
 
-static void sum_block_row(const nav_window_t *window, int32_t block_row, nav_moments_t *blocks)
+/* Places from low to high that lie within half a patch of a place, and in the window. */
+typedef struct
 {
-    const int32_t first =
-        ((window->first_row + block_row) * NAV_BLOCK) - window->surface->origin_row;
-    const nav_moments_t empty = {0};
+    int32_t low;
+    int32_t high;
+} nav_reach_t;
 
-    for (int32_t block = 0; block < NAV_BLOCKS; block++)
-    {
-        blocks[block] = empty;
-    }
-    for (int32_t row = first; row < (first + NAV_BLOCK); row++)
-    {
-        if ((row >= 0) && (row < NAV_SURFACE_SIZE))
-        {
-            add_surface_row(window, row, blocks);
-        }
-    }
+static nav_reach_t reach_of(const nav_window_t *window, int32_t place)
+{
+    const int32_t low = place - window->patch_half;
+    const int32_t high = place + window->patch_half;
+    const nav_reach_t reach = {(low > 0) ? low : 0, (high < NAV_SIDE) ? high : (NAV_SIDE - 1)};
+
+    return reach;
 }
 
 /* Strips: for each block, the sum over the blocks beside it that belong to its patch. */
-static void sum_strips(const nav_window_t *window, nav_costmap_scratch_t *scratch)
+static void sum_strip(const nav_window_t *window,
+                      nav_costmap_state_t *state,
+                      int32_t row,
+                      int32_t col)
 {
-    for (int32_t row = 0; row < NAV_BLOCKS; row++)
-    {
-        sum_block_row(window, row, scratch->blocks);
-        for (int32_t col = 0; col < NAV_BLOCKS; col++)
-        {
-            const int32_t low = col - window->patch_half;
-            const int32_t high = col + window->patch_half;
-            nav_moments_t strip = {0};
+    const nav_reach_t reach = reach_of(window, col);
+    const int32_t strip = table_index(window, row, col);
+    bool is_new = false;
 
-            for (int32_t other = (low > 0) ? low : 0; (other <= high) && (other < NAV_BLOCKS);
-                 other++)
-            {
-                add_moved(&strip, &scratch->blocks[other], 0.0,
-                          ((double) other - (double) col) * (double) NAV_BLOCK);
-            }
-            scratch->strips[(row * NAV_BLOCKS) + col] = strip;
+    for (int32_t other = reach.low; (other <= reach.high) && (!is_new); other++)
+    {
+        is_new = is_changed(window, table_index(window, row, other));
+    }
+    state->is_strip_new[strip] = is_new ? 1U : 0U;
+    if (is_new)
+    {
+        nav_moments_t sum = {0};
+
+        for (int32_t other = reach.low; other <= reach.high; other++)
+        {
+            add_moved(&sum, &state->blocks[table_index(window, row, other)], 0.0,
+                      ((double) other - (double) col) * (double) NAV_BLOCK);
+        }
+        state->strips[strip] = sum;
+    }
+}
+
+static void sum_strips(const nav_window_t *window, nav_costmap_state_t *state)
+{
+    for (int32_t row = 0; row < NAV_SIDE; row++)
+    {
+        for (int32_t col = 0; col < NAV_SIDE; col++)
+        {
+            sum_strip(window, state, row, col);
         }
     }
 }
 
+static bool is_patch_new(const nav_window_t *window,
+                         const nav_costmap_state_t *state,
+                         int32_t row,
+                         int32_t col)
+{
+    const nav_reach_t reach = reach_of(window, row);
+    bool is_new = false;
+
+    for (int32_t other = reach.low; (other <= reach.high) && (!is_new); other++)
+    {
+        is_new = state->is_strip_new[table_index(window, other, col)] != 0U;
+    }
+    return is_new;
+}
+
 static nav_moments_t sum_patch(const nav_window_t *window,
-                               const nav_costmap_scratch_t *scratch,
+                               const nav_costmap_state_t *state,
                                int32_t row,
                                int32_t col)
 {
-    const int32_t low = row - window->patch_half;
-    const int32_t high = row + window->patch_half;
+    const nav_reach_t reach = reach_of(window, row);
     nav_moments_t patch = {0};
 
-    for (int32_t other = (low > 0) ? low : 0; (other <= high) && (other < NAV_BLOCKS); other++)
+    for (int32_t other = reach.low; other <= reach.high; other++)
     {
-        add_moved(&patch, &scratch->strips[(other * NAV_BLOCKS) + col],
+        add_moved(&patch, &state->strips[table_index(window, other, col)],
                   ((double) other - (double) row) * (double) NAV_BLOCK, 0.0);
     }
     return patch;
@@ -257,6 +332,7 @@ static void set_plane(nav_cost_cell_t *cell, const nav_params_t *params, const n
 static void judge_patch(nav_cost_cell_t *cell,
                         const nav_params_t *params,
                         const nav_window_t *window,
+                        double z_reference_m,
                         const nav_moments_t *patch)
 {
     const double side = ((2.0 * (double) window->patch_half) + 1.0) * (double) NAV_BLOCK;
@@ -273,7 +349,7 @@ static void judge_patch(nav_cost_cell_t *cell,
     }
     else
     {
-        plane.z_m += window->z_reference_m;
+        plane.z_m += z_reference_m;
         set_plane(cell, params, &plane);
     }
 }
@@ -288,7 +364,7 @@ static bool is_covered(int32_t block, int32_t surface_origin)
 }
 
 static void judge_row(nav_costmap_t *map,
-                      const nav_costmap_scratch_t *scratch,
+                      nav_costmap_state_t *state,
                       const nav_params_t *params,
                       const nav_window_t *window,
                       int32_t row)
@@ -298,49 +374,37 @@ static void judge_row(nav_costmap_t *map,
     if ((map_row >= 0) && (map_row < NAV_SIZE) &&
         is_covered(window->first_row + row, window->surface->origin_row))
     {
-        for (int32_t col = 0; col < NAV_BLOCKS; col++)
+        for (int32_t col = 0; col < NAV_SIDE; col++)
         {
             const int32_t map_col = (window->first_col + col) - map->origin_col;
 
             if ((map_col >= 0) && (map_col < NAV_SIZE) &&
-                is_covered(window->first_col + col, window->surface->origin_col))
+                is_covered(window->first_col + col, window->surface->origin_col) &&
+                is_patch_new(window, state, row, col))
             {
-                const nav_moments_t patch = sum_patch(window, scratch, row, col);
+                const nav_moments_t patch = sum_patch(window, state, row, col);
+                const int32_t index = (map_row * NAV_SIZE) + map_col;
 
-                judge_patch(&map->cells[(map_row * NAV_SIZE) + map_col], params, window, &patch);
+                judge_patch(&map->cells[index], params, window, state->z_reference_m, &patch);
+                state->fitted_at[index] = window->changes->surface_count;
             }
         }
     }
+}
+
+/* Cells that came when the map was recentred, and sums with another reference, are not kept. */
+static bool is_state_usable(const nav_costmap_state_t *state,
+                            const nav_costmap_t *map,
+                            double z_reference_m)
+{
+    return (state->origin_row == map->origin_row) && (state->origin_col == map->origin_col) &&
+           (fabs(state->z_reference_m - z_reference_m) < NAV_REFERENCE_STEP_M);
 }
 
 static void open_cell(nav_cost_cell_t *cell)
 {
     cell->ace_failed_count = 0U;
     cell->ace_reason = (uint8_t) NAV_REASON_NONE;
-}
-
-static void update_marks(nav_costmap_t *map,
-                         const nav_params_t *params,
-                         const nav_kioz_t *kioz,
-                         double zone_margin_m)
-{
-    for (int32_t row = 0; row < NAV_SIZE; row++)
-    {
-        const double x_m = ((double) map->origin_row + (double) row + 0.5) * map->cell_m;
-
-        for (int32_t col = 0; col < NAV_SIZE; col++)
-        {
-            const double y_m = ((double) map->origin_col + (double) col + 0.5) * map->cell_m;
-            nav_cost_cell_t *cell = &map->cells[(row * NAV_SIZE) + col];
-            const uint32_t age_cycles = map->cycle - cell->ace_cycle;
-
-            if ((double) age_cycles > params->ace_feedback_cycles)
-            {
-                open_cell(cell);
-            }
-            cell->is_forbidden = nav_kioz_forbids(kioz, x_m, y_m, zone_margin_m) ? 1U : 0U;
-        }
-    }
 }
 
 static nav_cost_cell_t unknown_cell(const nav_params_t *params)
@@ -440,25 +504,55 @@ bool nav_costmap_recenter(nav_costmap_t *map,
 }
 
 void nav_costmap_update(nav_costmap_t *map,
-                        nav_costmap_scratch_t *scratch,
+                        nav_costmap_state_t *state,
                         const nav_params_t *params,
                         const nav_surface_t *surface,
-                        const nav_kioz_t *kioz,
-                        double zone_margin_m)
+                        const nav_surface_state_t *changes)
 {
-    nav_window_t window = {surface, 0.0, 0, 0, 0};
+    const double z_reference_m = reference_height(surface);
+    nav_window_t window = {surface, changes, 0U, 0, 0, 0, 0, 0};
 
-    window.z_reference_m = reference_height(surface);
+    window.seen_count = is_state_usable(state, map, z_reference_m) ? state->surface_count : 0U;
     window.first_row = floor_quotient(surface->origin_row);
     window.first_col = floor_quotient(surface->origin_col);
+    window.table_row = nav_wrap_index(window.first_row, NAV_SIDE);
+    window.table_col = nav_wrap_index(window.first_col, NAV_SIDE);
     (void) nav_floor_index(params->costmap_patch_cells / 2.0, &window.patch_half);
-    sum_strips(&window, scratch);
-    for (int32_t row = 0; row < NAV_BLOCKS; row++)
+    state->z_reference_m = z_reference_m;
+    state->surface_count = changes->surface_count;
+    state->origin_row = map->origin_row;
+    state->origin_col = map->origin_col;
+    sum_blocks(&window, state);
+    sum_strips(&window, state);
+    for (int32_t row = 0; row < NAV_SIDE; row++)
     {
-        judge_row(map, scratch, params, &window, row);
+        judge_row(map, state, params, &window, row);
     }
+}
+
+void nav_costmap_mark(nav_costmap_t *map,
+                      const nav_params_t *params,
+                      const nav_kioz_t *kioz,
+                      double zone_margin_m)
+{
     map->cycle += 1U;
-    update_marks(map, params, kioz, zone_margin_m);
+    for (int32_t row = 0; row < NAV_SIZE; row++)
+    {
+        const double x_m = ((double) map->origin_row + (double) row + 0.5) * map->cell_m;
+
+        for (int32_t col = 0; col < NAV_SIZE; col++)
+        {
+            const double y_m = ((double) map->origin_col + (double) col + 0.5) * map->cell_m;
+            nav_cost_cell_t *cell = &map->cells[(row * NAV_SIZE) + col];
+            const uint32_t age_cycles = map->cycle - cell->ace_cycle;
+
+            if ((double) age_cycles > params->ace_feedback_cycles)
+            {
+                open_cell(cell);
+            }
+            cell->is_forbidden = nav_kioz_forbids(kioz, x_m, y_m, zone_margin_m) ? 1U : 0U;
+        }
+    }
 }
 
 bool nav_costmap_find(const nav_costmap_t *map, double x_site_m, double y_site_m, uint32_t *index)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file nav_global.c
- * @brief Dijkstra over the costmap with an indexed binary heap.
+ * @brief Dijkstra over the costmap with lists of nodes by cost.
  */
 #include "nav_global.h"
 
@@ -12,12 +12,15 @@
 #include "nav_minmax.h"
 
 #define NAV_SIZE ((int32_t) NAV_COSTMAP_SIZE)
-#define NAV_CELLS ((uint32_t) NAV_COSTMAP_SIZE * (uint32_t) NAV_COSTMAP_SIZE)
-#define NAV_NEIGHBORS 8U
+#define NAV_STRIDE ((int32_t) NAV_GLOBAL_SIZE)
+#define NAV_NODES (NAV_STRIDE * NAV_STRIDE)
+#define NAV_BUCKETS ((int32_t) NAV_GLOBAL_BUCKETS)
+#define NAV_NEIGHBORS 8
+#define NAV_NO_NODE (-1)
 #define NAV_SQRT_2 1.41421356237309504880169
 
-/* More than the levels of a heap of any number of cells. */
-#define NAV_HEAP_LEVELS_MAX 32U
+/* Ground may not be cheaper: keeps the number of lists per second finite. */
+#define NAV_COST_LEAST_S_PER_M 1.0e-60
 
 typedef struct
 {
@@ -25,7 +28,13 @@ typedef struct
     int32_t col;
 } nav_step_t;
 
-static nav_step_t step_to(uint32_t neighbor)
+/* The node of a row and column of the costmap. */
+static int32_t node_at(int32_t row, int32_t col)
+{
+    return ((row + 1) * NAV_STRIDE) + (col + 1);
+}
+
+static nav_step_t step_to(int32_t neighbor)
 {
     static const nav_step_t steps[NAV_NEIGHBORS] = {{-1, -1}, {-1, 0}, {-1, 1}, {0, -1},
                                                     {0, 1},   {1, -1}, {1, 0},  {1, 1}};
@@ -33,138 +42,130 @@ static nav_step_t step_to(uint32_t neighbor)
     return steps[neighbor];
 }
 
-static bool is_blocked(const nav_global_t *global, uint32_t cell)
+static bool is_blocked(const nav_global_t *global, int32_t node)
 {
-    return global->cost_s_per_m[cell] >= NAV_COST_INFINITE;
+    return global->cost_s_per_m[node] >= NAV_COST_INFINITE;
 }
 
-static bool is_before(const nav_global_t *global, uint32_t cell, uint32_t other)
+static void unlink_node(nav_global_t *global, int32_t node)
 {
-    const double cost_s = global->cost_to_go_s[cell];
-    const double other_s = global->cost_to_go_s[other];
+    const int32_t before = global->previous[node];
+    const int32_t after = global->next[node];
 
-    return (cost_s < other_s) || ((cost_s <= other_s) && (cell < other));
+    global->next[before] = after;
+    global->previous[after] = before;
+    global->next[node] = node;
+    global->previous[node] = node;
 }
 
-/* Places are 1-based: the children of p are 2p and 2p + 1. */
-static void put(nav_global_t *global, uint32_t place, uint32_t cell)
+/* Puts a node that is in no list into the one of its cost. */
+static void link_node(nav_global_t *global, int32_t node)
 {
-    global->heap[place - 1U] = cell;
-    global->heap_place[cell] = place;
-}
+    const double place = (global->cost_to_go_s[node] - global->first_s) * global->buckets_per_s;
+    int32_t head = NAV_NODES + NAV_BUCKETS;
 
-static void sift_up(nav_global_t *global, uint32_t cell)
-{
-    uint32_t place = global->heap_place[cell];
-    bool is_placed = false;
-
-    for (uint32_t level = 0U; NAV_ALWAYS(level < NAV_HEAP_LEVELS_MAX) && (!is_placed); level++)
+    if (place < (double) NAV_BUCKETS)
     {
-        is_placed = (place == 1U) || is_before(global, global->heap[(place / 2U) - 1U], cell);
-        if (!is_placed)
-        {
-            put(global, place, global->heap[(place / 2U) - 1U]);
-            place /= 2U;
-        }
+        /* no node costs less than first_s: not negative, below the number of lists */
+        head = NAV_NODES + (int32_t) place;
     }
-    put(global, place, cell);
+    const int32_t after = global->next[head];
+
+    global->next[node] = after;
+    global->previous[node] = head;
+    global->next[head] = node;
+    global->previous[after] = node;
 }
 
-static uint32_t first_child(const nav_global_t *global, uint32_t place)
+/* Lowers the cost-to-go of a node, and puts it to work. */
+static void lower(nav_global_t *global, int32_t node, double cost_s)
 {
-    uint32_t child = 2U * place;
-
-    if ((child < global->heap_count) &&
-        is_before(global, global->heap[child], global->heap[child - 1U]))
+    if (cost_s < global->cost_to_go_s[node])
     {
-        child += 1U;
-    }
-    return child;
-}
-
-static void sift_down_from_top(nav_global_t *global, uint32_t cell)
-{
-    uint32_t place = 1U;
-    bool is_placed = false;
-
-    for (uint32_t level = 0U; NAV_ALWAYS(level < NAV_HEAP_LEVELS_MAX) && (!is_placed); level++)
-    {
-        const uint32_t child = first_child(global, place);
-
-        is_placed =
-            (child > global->heap_count) || is_before(global, cell, global->heap[child - 1U]);
-        if (!is_placed)
-        {
-            put(global, place, global->heap[child - 1U]);
-            place = child;
-        }
-    }
-    put(global, place, cell);
-}
-
-static uint32_t take_least(nav_global_t *global)
-{
-    const uint32_t least = global->heap[0];
-    const uint32_t last = global->heap[global->heap_count - 1U];
-
-    global->heap_place[least] = 0U;
-    global->heap_count -= 1U;
-    if (global->heap_count > 0U)
-    {
-        sift_down_from_top(global, last);
-    }
-    return least;
-}
-
-/* Lowers the cost-to-go of a cell, and queues it if it was not. */
-static void lower(nav_global_t *global, uint32_t cell, double cost_s)
-{
-    if (cost_s < global->cost_to_go_s[cell])
-    {
-        global->cost_to_go_s[cell] = cost_s;
-        if (global->heap_place[cell] == 0U)
-        {
-            global->heap_count += 1U;
-            global->heap_place[cell] = global->heap_count;
-        }
-        sift_up(global, cell);
+        global->cost_to_go_s[node] = cost_s;
+        unlink_node(global, node);
+        link_node(global, node);
     }
 }
 
-/* @return whether one can go to the neighbour, and which cell it is */
-static bool find_neighbor(const nav_global_t *global,
-                          uint32_t cell,
-                          nav_step_t step,
-                          uint32_t *neighbor)
+/* With all lists but the one beyond them empty: makes them start at the least cost there. */
+static void open_window(nav_global_t *global)
 {
-    const int32_t row = (int32_t) cell / NAV_SIZE;
-    const int32_t col = (int32_t) cell % NAV_SIZE;
-    const int32_t to_row = row + step.row;
-    const int32_t to_col = col + step.col;
-    bool is_open = (to_row >= 0) && (to_row < NAV_SIZE) && (to_col >= 0) && (to_col < NAV_SIZE);
+    const int32_t head = NAV_NODES + NAV_BUCKETS;
+    double least_s = NAV_COST_INFINITE;
+    int32_t node = global->next[head];
 
-    *neighbor = cell;
-    if (is_open)
+    for (int32_t count = 0; NAV_ALWAYS(count < NAV_NODES) && (node != head); count++)
     {
-        const int32_t beside_row = (row * NAV_SIZE) + to_col;
-        const int32_t beside_col = (to_row * NAV_SIZE) + col;
-        const int32_t to_cell = (to_row * NAV_SIZE) + to_col;
-
-        *neighbor = (uint32_t) to_cell;
-        /* no squeezing through between two blocked cells that touch at a corner */
-        is_open =
-            (!is_blocked(global, *neighbor)) && (!(is_blocked(global, (uint32_t) beside_row) &&
-                                                   is_blocked(global, (uint32_t) beside_col)));
+        least_s = nav_min(least_s, global->cost_to_go_s[node]);
+        node = global->next[node];
     }
-    return is_open;
+    global->first_s = least_s;
+    global->bucket = 0;
+    node = global->next[head];
+    global->next[head] = head;
+    global->previous[head] = head;
+    for (int32_t count = 0; NAV_ALWAYS(count < NAV_NODES) && (node != head); count++)
+    {
+        const int32_t after = global->next[node];
+
+        link_node(global, node);
+        node = after;
+    }
+}
+
+static bool find_list(nav_global_t *global)
+{
+    while ((global->bucket < NAV_BUCKETS) &&
+           (global->next[NAV_NODES + global->bucket] == (NAV_NODES + global->bucket)))
+    {
+        global->bucket += 1;
+    }
+    return global->bucket < NAV_BUCKETS;
+}
+
+/*
+ * Takes a node of the first list that has one. An interval is shorter than any edge, so that no node of
+ * the list can lower another: which of them is taken does not matter.
+ * @return NAV_NO_NODE when there are none
+ */
+static int32_t take_next(nav_global_t *global)
+{
+    int32_t node = NAV_NO_NODE;
+    bool is_found = find_list(global);
+
+    if (!is_found)
+    {
+        open_window(global);
+        is_found = find_list(global);
+    }
+    if (is_found)
+    {
+        node = global->next[NAV_NODES + global->bucket];
+        unlink_node(global, node);
+    }
+    return node;
+}
+
+static int32_t neighbor_at(int32_t node, nav_step_t step)
+{
+    return node + (step.row * NAV_STRIDE) + step.col;
+}
+
+/* No squeezing through between two blocked cells that touch at a corner. */
+static bool is_step_open(const nav_global_t *global, int32_t node, nav_step_t step)
+{
+    return (!is_blocked(global, neighbor_at(node, step))) &&
+           (!(is_blocked(global, node + (step.row * NAV_STRIDE)) &&
+              is_blocked(global, node + step.col)));
 }
 
 static double edge_cost_s(const nav_global_t *global,
-                          uint32_t cell,
-                          uint32_t neighbor,
+                          int32_t node,
+                          int32_t neighbor,
                           double length_m)
 {
-    return length_m * ((global->cost_s_per_m[cell] + global->cost_s_per_m[neighbor]) * 0.5);
+    return length_m * ((global->cost_s_per_m[node] + global->cost_s_per_m[neighbor]) * 0.5);
 }
 
 static double step_length_m(nav_step_t step, double cell_m)
@@ -174,27 +175,26 @@ static double step_length_m(nav_step_t step, double cell_m)
     return is_diagonal ? (cell_m * NAV_SQRT_2) : cell_m;
 }
 
-static void relax_neighbors(nav_global_t *global, uint32_t cell, double cell_m)
+static void relax_neighbors(nav_global_t *global, int32_t node, double cell_m)
 {
-    for (uint32_t index = 0U; index < NAV_NEIGHBORS; index++)
+    for (int32_t index = 0; index < NAV_NEIGHBORS; index++)
     {
         const nav_step_t step = step_to(index);
-        uint32_t neighbor = 0U;
+        const int32_t neighbor = neighbor_at(node, step);
+        const double cost_s = global->cost_to_go_s[node] +
+                              edge_cost_s(global, node, neighbor, step_length_m(step, cell_m));
 
-        if (find_neighbor(global, cell, step, &neighbor))
+        if ((cost_s < global->cost_to_go_s[neighbor]) && is_step_open(global, node, step))
         {
-            const double length_m = step_length_m(step, cell_m);
-
-            lower(global, neighbor,
-                  global->cost_to_go_s[cell] + edge_cost_s(global, cell, neighbor, length_m));
+            lower(global, neighbor, cost_s);
         }
     }
 }
 
-static nav_waydisc_t center_of_cell(const nav_costmap_t *map, uint32_t cell)
+static nav_waydisc_t center_of_node(const nav_costmap_t *map, int32_t node)
 {
-    const int32_t row = (int32_t) cell / NAV_SIZE;
-    const int32_t col = (int32_t) cell % NAV_SIZE;
+    const int32_t row = (node / NAV_STRIDE) - 1;
+    const int32_t col = (node % NAV_STRIDE) - 1;
     const nav_waydisc_t center = {((double) map->origin_row + (double) row + 0.5) * map->cell_m,
                                   ((double) map->origin_col + (double) col + 0.5) * map->cell_m,
                                   0.0};
@@ -202,21 +202,53 @@ static nav_waydisc_t center_of_cell(const nav_costmap_t *map, uint32_t cell)
     return center;
 }
 
-static double distance_to_cell_m(const nav_costmap_t *map,
-                                 uint32_t cell,
+static double distance_to_node_m(const nav_costmap_t *map,
+                                 int32_t node,
                                  double x_site_m,
                                  double y_site_m)
 {
-    const nav_waydisc_t center = center_of_cell(map, cell);
+    const nav_waydisc_t center = center_of_node(map, node);
     const double dx = center.x_site_m - x_site_m;
     const double dy = center.y_site_m - y_site_m;
 
     return sqrt((dx * dx) + (dy * dy));
 }
 
+/* @return whether a position lies on the map, and its node */
+static bool find_node(const nav_costmap_t *map, double x_site_m, double y_site_m, int32_t *node)
+{
+    uint32_t cell = 0U;
+    const bool is_found = nav_costmap_find(map, x_site_m, y_site_m, &cell);
+
+    *node = node_at((int32_t) cell / NAV_SIZE, (int32_t) cell % NAV_SIZE);
+    return is_found;
+}
+
 static double unknown_ground_s_per_m(const nav_params_t *params)
 {
     return params->cost_unknown_factor / params->speed_max_m_per_s;
+}
+
+static double free_cost_s_per_m(const nav_cost_cell_t *cell,
+                                const nav_params_t *params,
+                                bool use_terrain,
+                                bool use_zones)
+{
+    double cost_s_per_m = 1.0 / params->speed_max_m_per_s;
+
+    if (nav_costmap_reason(cell, params, use_terrain, use_zones) != NAV_REASON_NONE)
+    {
+        cost_s_per_m = NAV_COST_BLOCKED_S_PER_M;
+    }
+    else if (use_terrain)
+    {
+        cost_s_per_m = (double) cell->cost_s_per_m;
+    }
+    else
+    {
+        /* all free ground costs the same */
+    }
+    return cost_s_per_m;
 }
 
 static void reset(nav_global_t *global,
@@ -225,57 +257,63 @@ static void reset(nav_global_t *global,
                   bool use_terrain,
                   bool use_zones)
 {
-    for (uint32_t cell = 0U; cell < NAV_CELLS; cell++)
-    {
-        double cost_s_per_m = 1.0 / params->speed_max_m_per_s;
+    double least_s_per_m = NAV_COST_BLOCKED_S_PER_M;
 
-        if (nav_costmap_reason(&map->cells[cell], params, use_terrain, use_zones) !=
-            NAV_REASON_NONE)
-        {
-            cost_s_per_m = NAV_COST_INFINITE;
-        }
-        else if (use_terrain)
-        {
-            cost_s_per_m = (double) map->cells[cell].cost_s_per_m;
-        }
-        else
-        {
-            /* all free ground costs the same */
-        }
-        global->cost_s_per_m[cell] = cost_s_per_m;
-        global->cost_to_go_s[cell] = NAV_COST_INFINITE;
-        global->heap_place[cell] = 0U;
+    for (int32_t node = 0; node < NAV_NODES; node++)
+    {
+        global->cost_s_per_m[node] = NAV_COST_BLOCKED_S_PER_M;
+        global->cost_to_go_s[node] = NAV_COST_INFINITE;
     }
-    global->heap_count = 0U;
+    for (int32_t link = 0; link < (int32_t) NAV_GLOBAL_LINKS; link++)
+    {
+        global->next[link] = link;
+        global->previous[link] = link;
+    }
+    for (int32_t row = 0; row < NAV_SIZE; row++)
+    {
+        for (int32_t col = 0; col < NAV_SIZE; col++)
+        {
+            const double cost_s_per_m = free_cost_s_per_m(&map->cells[(row * NAV_SIZE) + col],
+                                                          params, use_terrain, use_zones);
+
+            global->cost_s_per_m[node_at(row, col)] = cost_s_per_m;
+            least_s_per_m = nav_min(least_s_per_m, cost_s_per_m);
+        }
+    }
+    global->first_s = 0.0;
+    global->buckets_per_s = 2.0 / (nav_max(least_s_per_m, NAV_COST_LEAST_S_PER_M) * map->cell_m);
+    global->bucket = 0;
 }
 
 /* Goal on the map: the free cells inside the waydisc, or else the free cell nearest to it. */
 static void seed_inside(nav_global_t *global,
                         const nav_costmap_t *map,
                         const nav_waydisc_t *goal,
-                        uint32_t goal_cell)
+                        int32_t goal_node)
 {
-    uint32_t nearest = NAV_CELLS;
+    int32_t nearest = NAV_NO_NODE;
     double nearest_m = NAV_COST_INFINITE;
+    bool is_seeded = false;
 
-    for (uint32_t cell = 0U; cell < NAV_CELLS; cell++)
+    for (int32_t node = 0; node < NAV_NODES; node++)
     {
-        if (!is_blocked(global, cell))
+        if (!is_blocked(global, node))
         {
-            const double distance_m = distance_to_cell_m(map, cell, goal->x_site_m, goal->y_site_m);
+            const double distance_m = distance_to_node_m(map, node, goal->x_site_m, goal->y_site_m);
 
-            if ((cell == goal_cell) || (distance_m <= goal->radius_m))
+            if ((node == goal_node) || (distance_m <= goal->radius_m))
             {
-                lower(global, cell, 0.0);
+                lower(global, node, 0.0);
+                is_seeded = true;
             }
             if (distance_m < nearest_m)
             {
-                nearest = cell;
+                nearest = node;
                 nearest_m = distance_m;
             }
         }
     }
-    if ((global->heap_count == 0U) && (nearest < NAV_CELLS))
+    if ((!is_seeded) && (nearest != NAV_NO_NODE))
     {
         lower(global, nearest, 0.0);
     }
@@ -312,42 +350,39 @@ static void seed_outside(nav_global_t *global,
     const int32_t edge_row = facing_edge(goal->x_site_m, map->cell_m, map->origin_row);
     const int32_t edge_col = facing_edge(goal->y_site_m, map->cell_m, map->origin_col);
 
-    for (uint32_t cell = 0U; cell < NAV_CELLS; cell++)
+    for (int32_t row = 0; row < NAV_SIZE; row++)
     {
-        const int32_t row = (int32_t) cell / NAV_SIZE;
-        const int32_t col = (int32_t) cell % NAV_SIZE;
-        const bool is_facing = (row == edge_row) || (col == edge_col);
-
-        if (is_facing && (!is_blocked(global, cell)))
+        for (int32_t col = 0; col < NAV_SIZE; col++)
         {
-            const double way_m = distance_to_cell_m(map, cell, goal->x_site_m, goal->y_site_m);
+            const int32_t node = node_at(row, col);
+            const bool is_facing = (row == edge_row) || (col == edge_col);
 
-            lower(global, cell, way_m * unknown_ground_s_per_m(params));
+            if (is_facing && (!is_blocked(global, node)))
+            {
+                const double way_m = distance_to_node_m(map, node, goal->x_site_m, goal->y_site_m);
+
+                lower(global, node, way_m * unknown_ground_s_per_m(params));
+            }
         }
     }
 }
 
-/* The first neighbour through which a cell reaches the goal; the cell itself when it is a seed. */
-static uint32_t next_cell(const nav_global_t *global, uint32_t cell, double cell_m)
+/* The first neighbour through which a node reaches the goal; the node itself when it is a seed. */
+static int32_t next_node(const nav_global_t *global, int32_t node, double cell_m)
 {
-    uint32_t next = cell;
+    int32_t next = node;
 
-    for (uint32_t index = 0U; (index < NAV_NEIGHBORS) && (next == cell); index++)
+    for (int32_t index = 0; (index < NAV_NEIGHBORS) && (next == node); index++)
     {
         const nav_step_t step = step_to(index);
-        uint32_t neighbor = 0U;
+        const int32_t neighbor = neighbor_at(node, step);
+        const double cost_s = global->cost_to_go_s[neighbor] +
+                              edge_cost_s(global, neighbor, node, step_length_m(step, cell_m));
 
-        if (find_neighbor(global, cell, step, &neighbor))
+        /* the plan made the node's cost by this very sum: it is met to the last bit */
+        if ((cost_s <= global->cost_to_go_s[node]) && is_step_open(global, node, step))
         {
-            const double length_m = step_length_m(step, cell_m);
-            const double cost_s =
-                global->cost_to_go_s[neighbor] + edge_cost_s(global, neighbor, cell, length_m);
-
-            /* the plan made the cell's cost by this very sum: it is met to the last bit */
-            if (cost_s <= global->cost_to_go_s[cell])
-            {
-                next = neighbor;
-            }
+            next = neighbor;
         }
     }
     return next;
@@ -355,23 +390,24 @@ static uint32_t next_cell(const nav_global_t *global, uint32_t cell, double cell
 
 static double least_over_neighbors_s(const nav_global_t *global,
                                      const nav_costmap_t *map,
-                                     uint32_t cell,
+                                     int32_t node,
                                      double x_site_m,
                                      double y_site_m)
 {
-    const double own_m = distance_to_cell_m(map, cell, x_site_m, y_site_m);
-    double least_s = global->cost_to_go_s[cell] + edge_cost_s(global, cell, cell, own_m);
+    const double own_m = distance_to_node_m(map, node, x_site_m, y_site_m);
+    double least_s = global->cost_to_go_s[node] + edge_cost_s(global, node, node, own_m);
 
-    for (uint32_t index = 0U; index < NAV_NEIGHBORS; index++)
+    for (int32_t index = 0; index < NAV_NEIGHBORS; index++)
     {
-        uint32_t neighbor = 0U;
+        const nav_step_t step = step_to(index);
+        const int32_t neighbor = neighbor_at(node, step);
 
-        if (find_neighbor(global, cell, step_to(index), &neighbor))
+        if (is_step_open(global, node, step))
         {
-            const double way_m = distance_to_cell_m(map, neighbor, x_site_m, y_site_m);
+            const double way_m = distance_to_node_m(map, neighbor, x_site_m, y_site_m);
 
             least_s = nav_min(least_s, global->cost_to_go_s[neighbor] +
-                                           edge_cost_s(global, cell, neighbor, way_m));
+                                           edge_cost_s(global, node, neighbor, way_m));
         }
     }
     return nav_min(least_s, NAV_COST_INFINITE);
@@ -384,23 +420,25 @@ void nav_global_plan(nav_global_t *global,
                      bool use_terrain,
                      bool use_zones)
 {
-    uint32_t goal_cell = 0U;
-    const bool is_inside = nav_costmap_find(map, goal->x_site_m, goal->y_site_m, &goal_cell);
+    int32_t node = NAV_NO_NODE;
+    const bool is_inside = find_node(map, goal->x_site_m, goal->y_site_m, &node);
 
     reset(global, map, params, use_terrain, use_zones);
     global->is_goal_inside = is_inside ? 1U : 0U;
     if (is_inside)
     {
-        seed_inside(global, map, goal, goal_cell);
+        seed_inside(global, map, goal, node);
     }
     else
     {
         seed_outside(global, map, params, goal);
     }
-    /* costs are positive: each cell is taken once, with its final cost */
-    for (uint32_t taken = 0U; (taken < NAV_CELLS) && (global->heap_count > 0U); taken++)
+    /* each node is taken once, with its final cost */
+    node = take_next(global);
+    for (int32_t taken = 0; NAV_ALWAYS(taken < NAV_NODES) && (node != NAV_NO_NODE); taken++)
     {
-        relax_neighbors(global, take_least(global), map->cell_m);
+        relax_neighbors(global, node, map->cell_m);
+        node = take_next(global);
     }
 }
 
@@ -411,10 +449,10 @@ double nav_global_cost_to_go_s(const nav_global_t *global,
                                double x_site_m,
                                double y_site_m)
 {
-    uint32_t cell = 0U;
+    int32_t node = NAV_NO_NODE;
     double cost_s = NAV_COST_INFINITE;
 
-    if (!nav_costmap_find(map, x_site_m, y_site_m, &cell))
+    if (!find_node(map, x_site_m, y_site_m, &node))
     {
         const double dx = goal->x_site_m - x_site_m;
         const double dy = goal->y_site_m - y_site_m;
@@ -422,9 +460,9 @@ double nav_global_cost_to_go_s(const nav_global_t *global,
         cost_s = nav_min(sqrt((dx * dx) + (dy * dy)) * unknown_ground_s_per_m(params),
                          NAV_COST_INFINITE);
     }
-    else if (!is_blocked(global, cell))
+    else if (!is_blocked(global, node))
     {
-        cost_s = least_over_neighbors_s(global, map, cell, x_site_m, y_site_m);
+        cost_s = least_over_neighbors_s(global, map, node, x_site_m, y_site_m);
     }
     else
     {
@@ -440,23 +478,23 @@ uint32_t nav_global_descend(const nav_global_t *global,
                             nav_point_t *points,
                             uint32_t capacity)
 {
-    uint32_t cell = 0U;
+    int32_t node = NAV_NO_NODE;
     uint32_t point_count = 0U;
-    bool is_going = nav_costmap_find(map, x_site_m, y_site_m, &cell) &&
-                    (global->cost_to_go_s[cell] < NAV_COST_INFINITE);
+    bool is_going = find_node(map, x_site_m, y_site_m, &node) &&
+                    (global->cost_to_go_s[node] < NAV_COST_INFINITE);
 
-    for (uint32_t step = 0U; NAV_ALWAYS(step < NAV_CELLS) && is_going && (point_count < capacity);
-         step++)
+    for (uint32_t step = 0U;
+         NAV_ALWAYS(step < (uint32_t) NAV_NODES) && is_going && (point_count < capacity); step++)
     {
-        const nav_waydisc_t center = center_of_cell(map, cell);
-        const uint32_t next = next_cell(global, cell, map->cell_m);
+        const nav_waydisc_t center = center_of_node(map, node);
+        const int32_t next = next_node(global, node, map->cell_m);
 
         points[point_count].x_m = (float) center.x_site_m;
         points[point_count].y_m = (float) center.y_site_m;
         points[point_count].z_m = 0.0F;
         point_count += 1U;
-        is_going = next != cell;
-        cell = next;
+        is_going = next != node;
+        node = next;
     }
     return point_count;
 }

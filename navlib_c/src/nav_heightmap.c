@@ -11,21 +11,60 @@
 #include "nav_math.h"
 
 #define NAV_SIZE ((int32_t) NAV_HEIGHTMAP_SIZE)
+#define NAV_BLOCK ((int32_t) NAV_CELLS_PER_COST_CELL)
+#define NAV_SIDE ((int32_t) NAV_BLOCKS_SIDE)
+#define NAV_RAW ((int32_t) NAV_RAW_SIZE)
 #define NAV_CELL_POINTS_MAX 65535U
 
-/* Rotation from ROVER to SITE, row by row. */
-typedef struct
-{
-    double r[3][3];
-} nav_rotation_t;
+/* Points placed in one go. The loops over a batch have this fixed length and no branches, so that
+ * compilers turn them into instructions for several numbers at once. */
+#define NAV_BATCH 32U
 
-/* One axis of the map: where its first global index is stored. */
+/* Time of the oldest height where there is none: it does not expire. */
+#define NAV_TIME_NEVER_S 1.0e300
+
+/* Not a place on the map. */
+#define NAV_OUTSIDE (-1)
+
+_Static_assert(NAV_BLOCKS_SIDE <= 256, "list_blocks() has a byte for each block");
+
+/* A coordinate of a point is linear in its coordinates in ROVER. */
 typedef struct
 {
-    double low;       /* first global index */
-    double high;      /* one past the last */
-    int32_t to_start; /* what turns a global index into a storage index, but for one size */
+    double x;
+    double y;
+    double z;
+    double offset;
+} nav_direction_t;
+
+/* How cells and blocks along one axis are stored. */
+typedef struct
+{
+    int32_t first;       /* where the first cell is stored */
+    int32_t in_block;    /* its place in its block */
+    int32_t first_block; /* where its block stands in tables */
 } nav_axis_t;
+
+/* From ROVER to cells north and east of the map's corner, not rounded, and to metres down in SITE. */
+typedef struct
+{
+    nav_direction_t row;
+    nav_direction_t col;
+    nav_direction_t down;
+    nav_axis_t rows;
+    nav_axis_t cols;
+} nav_placing_t;
+
+typedef struct
+{
+    double x_m[NAV_BATCH]; /* ROVER */
+    double y_m[NAV_BATCH];
+    double z_m[NAV_BATCH];
+    double place[NAV_BATCH]; /* cells from the map's corner along one axis */
+    double down_m[NAV_BATCH];
+    int32_t row[NAV_BATCH]; /* of storage, or NAV_OUTSIDE */
+    int32_t col[NAV_BATCH];
+} nav_batch_t;
 
 /* Known heights of three cells, one above the other. */
 typedef struct
@@ -34,8 +73,30 @@ typedef struct
     double known_count;
 } nav_column_t;
 
-static nav_rotation_t rotation_of_pose(const nav_pose_t *pose)
+static nav_direction_t scaled(double scale, double x, double y, double z, double offset)
 {
+    const nav_direction_t direction = {scale * x, scale * y, scale * z, offset};
+
+    return direction;
+}
+
+/* Global index of the block of a cell, along one axis. */
+static int32_t block_of(int32_t index)
+{
+    return (index - nav_wrap_index(index, NAV_BLOCK)) / NAV_BLOCK;
+}
+
+static nav_axis_t axis_from(int32_t origin)
+{
+    const nav_axis_t axis = {nav_wrap_index(origin, NAV_SIZE), nav_wrap_index(origin, NAV_BLOCK),
+                             nav_wrap_index(block_of(origin), NAV_SIDE)};
+
+    return axis;
+}
+
+static nav_placing_t placing_at(const nav_heightmap_t *map, const nav_pose_t *pose)
+{
+    const double cells_per_m = 1.0 / map->cell_m;
     const double cr = nav_cos(pose->roll_rad);
     const double sr = nav_sin(pose->roll_rad);
     const double cp = nav_cos(pose->pitch_rad);
@@ -43,60 +104,108 @@ static nav_rotation_t rotation_of_pose(const nav_pose_t *pose)
     const double cy = nav_cos(pose->yaw_rad);
     const double sy = nav_sin(pose->yaw_rad);
     /* Rz(yaw) Ry(pitch) Rx(roll) */
-    const nav_rotation_t rotation = {
-        {{cy * cp, (cy * sp * sr) - (sy * cr), (cy * sp * cr) + (sy * sr)},
-         {sy * cp, (sy * sp * sr) + (cy * cr), (sy * sp * cr) - (cy * sr)},
-         {-sp, cp * sr, cp * cr}}};
+    const nav_placing_t placing = {
+        scaled(cells_per_m, cy * cp, (cy * sp * sr) - (sy * cr), (cy * sp * cr) + (sy * sr),
+               (cells_per_m * pose->x_site_m) - (double) map->origin_row),
+        scaled(cells_per_m, sy * cp, (sy * sp * sr) + (cy * cr), (sy * sp * cr) - (cy * sr),
+               (cells_per_m * pose->y_site_m) - (double) map->origin_col),
+        scaled(1.0, -sp, cp * sr, cp * cr, pose->z_site_m), axis_from(map->origin_row),
+        axis_from(map->origin_col)};
 
-    return rotation;
+    return placing;
 }
 
-static double rotated(const nav_point_t *point, const double row[3])
+static void spread(nav_batch_t *batch, const nav_point_t *points, uint32_t count)
 {
-    return (row[0] * (double) point->x_m) + (row[1] * (double) point->y_m) +
-           (row[2] * (double) point->z_m);
+    for (uint32_t point = 0U; point < count; point++)
+    {
+        batch->x_m[point] = (double) points[point].x_m;
+        batch->y_m[point] = (double) points[point].y_m;
+        batch->z_m[point] = (double) points[point].z_m;
+    }
 }
 
-static nav_axis_t axis_from(int32_t origin)
+static void place_along(const nav_batch_t *batch, const nav_direction_t *to, double *place)
 {
-    const nav_axis_t axis = {(double) origin, (double) origin + (double) NAV_HEIGHTMAP_SIZE,
-                             nav_wrap_index(origin, NAV_SIZE) - origin};
-
-    return axis;
+    for (uint32_t point = 0U; point < NAV_BATCH; point++)
+    {
+        place[point] = ((to->x * batch->x_m[point]) + (to->y * batch->y_m[point])) +
+                       ((to->z * batch->z_m[point]) + to->offset);
+    }
 }
 
-/* floor() of a number known to lie in the axis, as a storage index */
-static int32_t storage_index(const nav_axis_t *axis, double scaled)
+static int32_t wrap_once(int32_t index, int32_t size)
 {
-    const int32_t truncated = (int32_t) scaled;
-    const int32_t global = truncated - ((scaled < (double) truncated) ? 1 : 0);
-    const int32_t stored = global + axis->to_start;
-
-    return (stored >= NAV_SIZE) ? (stored - NAV_SIZE) : stored;
+    return (index >= size) ? (index - size) : index;
 }
 
-/* @return 1 when the point was taken, 0 when the cell is full */
+static void store_along(const double *place, int32_t first, int32_t *stored)
+{
+    for (uint32_t point = 0U; point < NAV_BATCH; point++)
+    {
+        const double from_low = (place[point] >= 0.0) ? place[point] : (double) NAV_OUTSIDE;
+        const double inside =
+            (from_low < (double) NAV_HEIGHTMAP_SIZE) ? from_low : (double) NAV_OUTSIDE;
+        /* not negative on the map: truncation is floor() */
+        const int32_t index = (int32_t) inside;
+
+        stored[point] = (index >= 0) ? wrap_once(index + first, NAV_SIZE) : NAV_OUTSIDE;
+    }
+}
+
+/* For each place of storage along an axis, where its block stands in tables. */
+static void list_blocks(const nav_axis_t *axis, uint8_t *block_of_stored)
+{
+    int32_t in_block = axis->in_block;
+    int32_t block = axis->first_block;
+
+    for (int32_t index = 0; index < NAV_SIZE; index++)
+    {
+        block_of_stored[wrap_once(axis->first + index, NAV_SIZE)] = (uint8_t) block;
+        in_block += 1;
+        if (in_block == NAV_BLOCK)
+        {
+            in_block = 0;
+            block = wrap_once(block + 1, NAV_SIDE);
+        }
+    }
+}
+
+static void place_points(nav_batch_t *batch, const nav_placing_t *placing)
+{
+    place_along(batch, &placing->row, batch->place);
+    store_along(batch->place, placing->rows.first, batch->row);
+    place_along(batch, &placing->col, batch->place);
+    store_along(batch->place, placing->cols.first, batch->col);
+    place_along(batch, &placing->down, batch->down_m);
+}
+
+/* All bits when two numbers are equal, none otherwise. */
+static uint32_t mask_of_equal(uint32_t a, uint32_t b)
+{
+    const uint32_t difference = a ^ b;
+
+    return ((difference | (0U - difference)) >> 31U) - 1U;
+}
+
+/*
+ * Without a branch on the image: which points are the first of their cells cannot be predicted.
+ * @return 1 when the point was taken, 0 when the cell is full
+ */
 static uint32_t add_to_cell(nav_height_cell_t *cell, double z_m, double time_s, uint32_t image_id)
 {
-    uint32_t taken = 1U;
+    const uint32_t mask = mask_of_equal(cell->image_id, image_id);
+    const uint32_t count = mask & cell->point_count;
+    const bool is_taken = count < NAV_CELL_POINTS_MAX;
 
-    if ((cell->point_count == 0U) || (cell->image_id != image_id))
+    if (is_taken)
     {
-        cell->z_sum_m = z_m;
+        cell->z_sum_m = ((double) (mask & 1U) * cell->z_sum_m) + z_m;
         cell->time_s = time_s;
         cell->image_id = image_id;
-        cell->point_count = 1U;
+        cell->point_count = count + 1U;
     }
-    else if (cell->point_count < NAV_CELL_POINTS_MAX)
-    {
-        cell->z_sum_m += z_m;
-        cell->point_count += 1U;
-    }
-    else
-    {
-        taken = 0U;
-    }
-    return taken;
+    return is_taken ? 1U : 0U;
 }
 
 static void clear_rows(nav_heightmap_t *map, int32_t first_row, int32_t row_count)
@@ -136,6 +245,51 @@ static int32_t leaving_count(int32_t old_origin, int32_t new_origin)
     return (distance < (int64_t) NAV_SIZE) ? (int32_t) distance : NAV_SIZE;
 }
 
+static void mark_rows(nav_heightmap_t *map, int32_t first_row, int32_t row_count)
+{
+    const int32_t last = block_of(first_row + row_count - 1);
+
+    for (int32_t row = block_of(first_row); row <= last; row++)
+    {
+        const int32_t first = nav_wrap_index(row, NAV_SIDE) * NAV_SIDE;
+
+        (void) memset(&map->is_changed[first], 1, (size_t) NAV_SIDE);
+    }
+}
+
+static void mark_cols(nav_heightmap_t *map, int32_t first_col, int32_t col_count)
+{
+    const int32_t last = block_of(first_col + col_count - 1);
+
+    for (int32_t col = block_of(first_col); col <= last; col++)
+    {
+        for (int32_t row = 0; row < NAV_SIDE; row++)
+        {
+            map->is_changed[(row * NAV_SIDE) + nav_wrap_index(col, NAV_SIDE)] = 1U;
+        }
+    }
+}
+
+/* Marks what comes along an axis that moves, and the edge behind which cells leave. */
+static void mark_moved(nav_heightmap_t *map, int32_t origin_row, int32_t origin_col)
+{
+    const int32_t rows = leaving_count(map->origin_row, origin_row);
+    const int32_t cols = leaving_count(map->origin_col, origin_col);
+
+    if (rows > 0)
+    {
+        mark_rows(map, origin_row, (origin_row > map->origin_row) ? 1 : rows);
+        mark_rows(map, (origin_row + NAV_SIZE) - ((origin_row > map->origin_row) ? rows : 1),
+                  (origin_row > map->origin_row) ? rows : 1);
+    }
+    if (cols > 0)
+    {
+        mark_cols(map, origin_col, (origin_col > map->origin_col) ? 1 : cols);
+        mark_cols(map, (origin_col + NAV_SIZE) - ((origin_col > map->origin_col) ? cols : 1),
+                  (origin_col > map->origin_col) ? cols : 1);
+    }
+}
+
 static float height_of_cell(const nav_height_cell_t *cell, double time_s, double expiry_s)
 {
     float z_m = NAV_SURFACE_UNKNOWN_M;
@@ -152,84 +306,251 @@ static float height_of_cell(const nav_height_cell_t *cell, double time_s, double
     return z_m;
 }
 
-static void unwrap(const nav_heightmap_t *map, double time_s, double expiry_s, float *z_site_m)
+/* Cells of a block that lie on the map, as its rows and columns from the corner. */
+typedef struct
 {
-    const int32_t start_row = nav_wrap_index(map->origin_row, NAV_SIZE);
-    const int32_t start_col = nav_wrap_index(map->origin_col, NAV_SIZE);
-    int32_t stored_row = start_row;
+    int32_t row;
+    int32_t row_end;
+    int32_t col;
+    int32_t col_end;
+} nav_patch_t;
 
-    for (int32_t row = 0; row < NAV_SIZE; row++)
+static int32_t clipped(int32_t place)
+{
+    const int32_t from_low = (place > 0) ? place : 0;
+
+    return (from_low < NAV_SIZE) ? from_low : NAV_SIZE;
+}
+
+/* Of a block given by its place from that of the map's corner. */
+static nav_patch_t patch_of_block(const nav_axis_t *rows,
+                                  const nav_axis_t *cols,
+                                  int32_t block_row,
+                                  int32_t block_col)
+{
+    const int32_t row = (block_row * NAV_BLOCK) - rows->in_block;
+    const int32_t col = (block_col * NAV_BLOCK) - cols->in_block;
+    const nav_patch_t patch = {clipped(row), clipped(row + NAV_BLOCK), clipped(col),
+                               clipped(col + NAV_BLOCK)};
+
+    return patch;
+}
+
+/* Takes the heights of a block from the map. */
+static void unwrap(const nav_heightmap_t *map,
+                   const nav_patch_t *patch,
+                   double time_s,
+                   double expiry_s,
+                   nav_surface_block_t *block,
+                   float *raw_m)
+{
+    const int32_t first_col = nav_wrap_index(map->origin_col + patch->col, NAV_SIZE);
+    int32_t stored_row = nav_wrap_index(map->origin_row + patch->row, NAV_SIZE);
+    double oldest_s = NAV_TIME_NEVER_S;
+    uint32_t gap_count = 0U;
+
+    for (int32_t row = patch->row; row < patch->row_end; row++)
     {
-        const nav_height_cell_t *cells = &map->cells[stored_row * NAV_SIZE];
-        float *z_m = &z_site_m[row * NAV_SIZE];
+        int32_t stored_col = first_col;
 
-        for (int32_t col = start_col; col < NAV_SIZE; col++)
+        for (int32_t col = patch->col; col < patch->col_end; col++)
         {
-            z_m[col - start_col] = height_of_cell(&cells[col], time_s, expiry_s);
+            const nav_height_cell_t *cell = &map->cells[(stored_row * NAV_SIZE) + stored_col];
+            const float z_m = height_of_cell(cell, time_s, expiry_s);
+            const bool is_gap = z_m >= NAV_SURFACE_UNKNOWN_M;
+
+            raw_m[((row + 1) * NAV_RAW) + (col + 1)] = z_m;
+            oldest_s = ((!is_gap) && (cell->time_s < oldest_s)) ? cell->time_s : oldest_s;
+            gap_count += is_gap ? 1U : 0U;
+            stored_col = wrap_once(stored_col + 1, NAV_SIZE);
         }
-        for (int32_t col = 0; col < start_col; col++)
+        stored_row = wrap_once(stored_row + 1, NAV_SIZE);
+    }
+    block->oldest_s = oldest_s;
+    block->gap_count = gap_count;
+}
+
+/* Copies a patch without gaps to the surface. */
+static void copy(const float *raw_m, const nav_patch_t *patch, float *z_site_m)
+{
+    for (int32_t row = patch->row; row < patch->row_end; row++)
+    {
+        for (int32_t col = patch->col; col < patch->col_end; col++)
         {
-            z_m[(col + NAV_SIZE) - start_col] = height_of_cell(&cells[col], time_s, expiry_s);
+            z_site_m[(row * NAV_SIZE) + col] = raw_m[((row + 1) * NAV_RAW) + (col + 1)];
         }
-        stored_row = ((stored_row + 1) < NAV_SIZE) ? (stored_row + 1) : 0;
     }
 }
 
-static void add_to_column(nav_column_t *column, float z_m)
+/* Sum and number of the known of three heights, one above the other. */
+static nav_column_t column_at(const float *raw_m, int32_t index)
 {
-    if (z_m < NAV_SURFACE_UNKNOWN_M)
-    {
-        column->z_sum_m += (double) z_m;
-        column->known_count += 1.0;
-    }
-}
-
-/* Heights south, at and north of a cell; a height filled in before does not count. */
-static nav_column_t column_at(const float *z_site_m,
-                              const uint8_t *is_filled,
-                              int32_t row,
-                              int32_t col)
-{
-    const int32_t index = (row * NAV_SIZE) + col;
     nav_column_t column = {0.0, 0.0};
 
-    if (col < NAV_SIZE)
+    for (int32_t row = -1; row <= 1; row++)
     {
-        if ((row > 0) && (is_filled[col] == 0U))
-        {
-            add_to_column(&column, z_site_m[index - NAV_SIZE]);
-        }
-        add_to_column(&column, z_site_m[index]);
-        if ((row + 1) < NAV_SIZE)
-        {
-            add_to_column(&column, z_site_m[index + NAV_SIZE]);
-        }
+        const float z_m = raw_m[index + (row * NAV_RAW)];
+        const bool is_known = z_m < NAV_SURFACE_UNKNOWN_M;
+
+        column.z_sum_m += is_known ? (double) z_m : 0.0;
+        column.known_count += is_known ? 1.0 : 0.0;
     }
     return column;
 }
 
-/* is_filled tells of the row to the south, and of this row west of where the work has come. */
-static void fill_row(float *z_site_m, uint8_t *is_filled, int32_t row, double neighbors_min)
+/* Copies a patch to the surface, gaps with enough known neighbours closed. */
+static void fill(const float *raw_m,
+                 const nav_patch_t *patch,
+                 double neighbors_min,
+                 float *z_site_m)
 {
-    nav_column_t west = {0.0, 0.0};
-    nav_column_t here = column_at(z_site_m, is_filled, row, 0);
-
-    for (int32_t col = 0; col < NAV_SIZE; col++)
+    for (int32_t row = patch->row; row < patch->row_end; row++)
     {
-        const nav_column_t east = column_at(z_site_m, is_filled, row, col + 1);
-        const double known_count = west.known_count + here.known_count + east.known_count;
-        float *z_m = &z_site_m[(row * NAV_SIZE) + col];
+        int32_t index = ((row + 1) * NAV_RAW) + (patch->col + 1);
+        nav_column_t west = column_at(raw_m, index - 1);
+        nav_column_t here = column_at(raw_m, index);
 
-        is_filled[col] = 0U;
-        if ((*z_m >= NAV_SURFACE_UNKNOWN_M) && (known_count >= neighbors_min))
+        for (int32_t col = patch->col; col < patch->col_end; col++)
         {
-            const double mean_m = (west.z_sum_m + here.z_sum_m + east.z_sum_m) / known_count;
+            const nav_column_t east = column_at(raw_m, index + 1);
+            const double known_count = west.known_count + here.known_count + east.known_count;
+            float z_m = raw_m[index];
 
-            *z_m = (float) mean_m;
-            is_filled[col] = 1U;
+            if ((z_m >= NAV_SURFACE_UNKNOWN_M) && (known_count >= neighbors_min))
+            {
+                z_m = (float) ((west.z_sum_m + here.z_sum_m + east.z_sum_m) / known_count);
+            }
+            z_site_m[(row * NAV_SIZE) + col] = z_m;
+            west = here;
+            here = east;
+            index += 1;
         }
-        west = here;
-        here = east;
+    }
+}
+
+static void shift(float *z_m, int32_t count, int32_t offset)
+{
+    if (offset > 0)
+    {
+        (void) memmove(z_m, &z_m[offset], sizeof(z_m[0]) * (size_t) (count - offset));
+    }
+    else
+    {
+        (void) memmove(&z_m[-offset], z_m, sizeof(z_m[0]) * (size_t) (count + offset));
+    }
+}
+
+/* Moves what was made before to where it is now; what comes is made later. @return false if nothing stays */
+static bool follow(const nav_heightmap_t *map, nav_surface_state_t *state, nav_surface_t *surface)
+{
+    const int64_t rows = (int64_t) map->origin_row - (int64_t) surface->origin_row;
+    const int64_t cols = (int64_t) map->origin_col - (int64_t) surface->origin_col;
+    const int64_t size = (int64_t) NAV_SIZE;
+    const bool is_near = (rows > -size) && (rows < size) && (cols > -size) && (cols < size);
+
+    if (is_near && ((rows != 0) || (cols != 0)))
+    {
+        shift(state->z_m, NAV_RAW * NAV_RAW, (int32_t) ((rows * (int64_t) NAV_RAW) + cols));
+        shift(surface->z_site_m, NAV_SIZE * NAV_SIZE, (int32_t) ((rows * size) + cols));
+    }
+    return is_near;
+}
+
+static void clear_border(float *raw_m)
+{
+    for (int32_t place = 0; place < NAV_RAW; place++)
+    {
+        raw_m[place] = NAV_SURFACE_UNKNOWN_M;
+        raw_m[((NAV_RAW - 1) * NAV_RAW) + place] = NAV_SURFACE_UNKNOWN_M;
+        raw_m[place * NAV_RAW] = NAV_SURFACE_UNKNOWN_M;
+        raw_m[(place * NAV_RAW) + (NAV_RAW - 1)] = NAV_SURFACE_UNKNOWN_M;
+    }
+}
+
+/* Renews the heights of all blocks whose map changed or expired, and leaves them marked. */
+static void renew(nav_heightmap_t *map, double time_s, double expiry_s, nav_surface_state_t *state)
+{
+    const nav_axis_t rows = axis_from(map->origin_row);
+    const nav_axis_t cols = axis_from(map->origin_col);
+
+    for (int32_t row = 0; row < NAV_SIDE; row++)
+    {
+        const int32_t first = wrap_once(rows.first_block + row, NAV_SIDE) * NAV_SIDE;
+
+        for (int32_t col = 0; col < NAV_SIDE; col++)
+        {
+            const int32_t block = first + wrap_once(cols.first_block + col, NAV_SIDE);
+
+            if ((map->is_changed[block] != 0U) ||
+                ((time_s - state->blocks[block].oldest_s) > expiry_s))
+            {
+                const nav_patch_t patch = patch_of_block(&rows, &cols, row, col);
+
+                map->is_changed[block] = 1U;
+                unwrap(map, &patch, time_s, expiry_s, &state->blocks[block], state->z_m);
+            }
+        }
+    }
+}
+
+/* Gives the blocks that are marked, and those beside them, the number of this surface. */
+static void stamp(const uint8_t *is_changed, nav_surface_state_t *state)
+{
+    for (int32_t row = 0; row < NAV_SIDE; row++)
+    {
+        const uint8_t *south = &is_changed[wrap_once(row + (NAV_SIDE - 1), NAV_SIDE) * NAV_SIDE];
+        const uint8_t *here = &is_changed[row * NAV_SIDE];
+        const uint8_t *north = &is_changed[wrap_once(row + 1, NAV_SIDE) * NAV_SIDE];
+        uint8_t is_marked[NAV_BLOCKS_SIDE];
+
+        for (int32_t col = 0; col < NAV_SIDE; col++)
+        {
+            is_marked[col] = (uint8_t) (south[col] | here[col] | north[col]);
+        }
+        for (int32_t col = 0; col < NAV_SIDE; col++)
+        {
+            const int32_t west = wrap_once(col + (NAV_SIDE - 1), NAV_SIDE);
+            const int32_t east = wrap_once(col + 1, NAV_SIDE);
+
+            if ((is_marked[west] | is_marked[col] | is_marked[east]) != 0U)
+            {
+                state->changed_at[(row * NAV_SIDE) + col] = state->surface_count;
+            }
+        }
+    }
+}
+
+/* Closes the gaps of all blocks with the number of this surface. */
+static void fill_stamped(const nav_heightmap_t *map,
+                         const nav_surface_state_t *state,
+                         double neighbors_min,
+                         float *z_site_m)
+{
+    const nav_axis_t rows = axis_from(map->origin_row);
+    const nav_axis_t cols = axis_from(map->origin_col);
+
+    for (int32_t row = 0; row < NAV_SIDE; row++)
+    {
+        const int32_t first = wrap_once(rows.first_block + row, NAV_SIDE) * NAV_SIDE;
+
+        for (int32_t col = 0; col < NAV_SIDE; col++)
+        {
+            const int32_t block = first + wrap_once(cols.first_block + col, NAV_SIDE);
+
+            if (state->changed_at[block] == state->surface_count)
+            {
+                const nav_patch_t patch = patch_of_block(&rows, &cols, row, col);
+
+                if (state->blocks[block].gap_count == 0U)
+                {
+                    copy(state->z_m, &patch, z_site_m);
+                }
+                else
+                {
+                    fill(state->z_m, &patch, neighbors_min, z_site_m);
+                }
+            }
+        }
     }
 }
 
@@ -259,6 +580,7 @@ bool nav_heightmap_center(nav_heightmap_t *map, double x_site_m, double y_site_m
                        leaving_count(map->origin_row, origin_row));
             clear_cols(map, first_leaving(map->origin_col, origin_col),
                        leaving_count(map->origin_col, origin_col));
+            mark_moved(map, origin_row, origin_col);
         }
         map->origin_row = origin_row;
         map->origin_col = origin_col;
@@ -274,49 +596,73 @@ nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
                                 const nav_point_t *points,
                                 uint32_t point_count)
 {
-    const nav_axis_t rows = axis_from(map->origin_row);
-    const nav_axis_t cols = axis_from(map->origin_col);
-    const double cells_per_m = 1.0 / map->cell_m;
+    const nav_placing_t placing = placing_at(map, pose);
+    const uint32_t capacity = (uint32_t) NAV_CHUNK_POINTS_MAX;
+    const uint32_t total = (point_count < capacity) ? point_count : capacity;
     nav_merge_t merge = {0U, 0U};
-    nav_rotation_t rotation;
+    nav_batch_t batch;
+    uint8_t block_row[NAV_HEIGHTMAP_SIZE];
+    uint8_t block_col[NAV_HEIGHTMAP_SIZE];
 
-    rotation = rotation_of_pose(pose);
-    for (uint32_t point = 0U; (point < point_count) && (point < (uint32_t) NAV_CHUNK_POINTS_MAX);
-         point++)
+    list_blocks(&placing.rows, block_row);
+    list_blocks(&placing.cols, block_col);
+    (void) memset(&batch, 0, sizeof(batch)); /* what no point fills is placed as well */
+    for (uint32_t first = 0U; first < total; first += NAV_BATCH)
     {
-        const double row = cells_per_m * (pose->x_site_m + rotated(&points[point], rotation.r[0]));
-        const double col = cells_per_m * (pose->y_site_m + rotated(&points[point], rotation.r[1]));
+        const uint32_t rest = total - first;
+        const uint32_t count = (rest < NAV_BATCH) ? rest : NAV_BATCH;
 
-        if ((row >= rows.low) && (row < rows.high) && (col >= cols.low) && (col < cols.high))
+        spread(&batch, &points[first], count);
+        place_points(&batch, &placing);
+        for (uint32_t point = 0U; point < count; point++)
         {
-            const double z_m = pose->z_site_m + rotated(&points[point], rotation.r[2]);
-            const int32_t index =
-                (storage_index(&rows, row) * NAV_SIZE) + storage_index(&cols, col);
+            const int32_t row = batch.row[point];
+            const int32_t col = batch.col[point];
 
-            merge.merged_count += add_to_cell(&map->cells[index], z_m, time_s, image_id);
-        }
-        else
-        {
-            merge.outside_count += 1U;
+            if ((row == NAV_OUTSIDE) || (col == NAV_OUTSIDE))
+            {
+                merge.outside_count += 1U;
+            }
+            else
+            {
+                map->is_changed[((int32_t) block_row[row] * NAV_SIDE) + (int32_t) block_col[col]] =
+                    1U;
+                merge.merged_count += add_to_cell(&map->cells[(row * NAV_SIZE) + col],
+                                                  batch.down_m[point], time_s, image_id);
+            }
         }
     }
     return merge;
 }
 
-void nav_heightmap_surface(const nav_heightmap_t *map,
+int32_t nav_heightmap_block(int32_t row, int32_t col)
+{
+    return (nav_wrap_index(block_of(row), NAV_SIDE) * NAV_SIDE) +
+           nav_wrap_index(block_of(col), NAV_SIDE);
+}
+
+void nav_heightmap_surface(nav_heightmap_t *map,
                            const nav_params_t *params,
                            double time_s,
+                           nav_surface_state_t *state,
                            nav_surface_t *surface)
 {
-    uint8_t is_filled[NAV_HEIGHTMAP_SIZE] = {0};
+    /* what had expired is known again when time runs backwards */
+    const bool is_kept =
+        (state->surface_count > 0U) && (time_s >= surface->time_s) && follow(map, state, surface);
 
+    if (!is_kept)
+    {
+        (void) memset(map->is_changed, 1, sizeof(map->is_changed));
+    }
+    state->surface_count += 1U;
     surface->time_s = time_s;
     surface->cell_m = map->cell_m;
     surface->origin_row = map->origin_row;
     surface->origin_col = map->origin_col;
-    unwrap(map, time_s, params->heightmap_expiry_s, surface->z_site_m);
-    for (int32_t row = 0; row < NAV_SIZE; row++)
-    {
-        fill_row(surface->z_site_m, is_filled, row, params->surface_fill_neighbors);
-    }
+    clear_border(state->z_m);
+    renew(map, time_s, params->heightmap_expiry_s, state);
+    stamp(map->is_changed, state);
+    fill_stamped(map, state, params->surface_fill_neighbors, surface->z_site_m);
+    (void) memset(map->is_changed, 0, sizeof(map->is_changed));
 }

@@ -26,11 +26,6 @@
     ((uint32_t) (offsetof(type, last) + (sizeof(((type *) NULL)->last[0]) *                        \
                                          (size_t) (((count) < (max)) ? (count) : (max)))))
 
-static bool is_within(double x, double limit)
-{
-    return nav_isfinite(x) && (fabs(x) <= limit);
-}
-
 /** NOT_FINITE for a NaN or infinity, OUT_OF_RANGE beyond [low, high]. */
 static nav_status_t check_range(double x, double low, double high)
 {
@@ -261,16 +256,27 @@ static nav_status_t check_point(const nav_point_t *point)
     return first_error(checks, 3U);
 }
 
+/** Whether all points are near and finite; one sum and comparison for each, false for a NaN. */
+static bool are_near(const nav_point_t *points, uint32_t count)
+{
+    uint32_t far_count = 0U;
+    for (uint32_t k = 0U; k < count; k++)
+    {
+        const float sum_m = fabsf(points[k].x_m) + fabsf(points[k].y_m) + fabsf(points[k].z_m);
+        far_count += (sum_m <= (float) POINT_MAX_M) ? 0U : 1U;
+    }
+    return far_count == 0U;
+}
+
 static nav_status_t check_points(const nav_process_disparity_in_t *in)
 {
     nav_status_t status = NAV_OK;
-    for (uint32_t k = 0U; (k < in->point_count) && (status == NAV_OK); k++)
+    if (!are_near(in->points, in->point_count))
     {
-        const nav_point_t *point = &in->points[k];
-        const bool is_fine = is_within((double) point->x_m, POINT_MAX_M) &&
-                             is_within((double) point->y_m, POINT_MAX_M) &&
-                             is_within((double) point->z_m, POINT_MAX_M);
-        status = is_fine ? NAV_OK : check_point(point);
+        for (uint32_t k = 0U; (k < in->point_count) && (status == NAV_OK); k++)
+        {
+            status = check_point(&in->points[k]);
+        }
     }
     return status;
 }
@@ -384,11 +390,13 @@ static void analyze(nav_ctx_t *ctx,
     uint32_t index = 0U;
     ctx->time_s = in->time_s;
     (void) nav_heightmap_center(&ctx->heightmap, x_m, y_m);
-    nav_heightmap_surface(&ctx->heightmap, &ctx->params, in->time_s, &ctx->surface);
+    nav_heightmap_surface(&ctx->heightmap, &ctx->params, in->time_s, &ctx->surface_state,
+                          &ctx->surface);
     out->is_recentered = nav_costmap_recenter(&ctx->costmap, &ctx->params, x_m, y_m) ? 1U : 0U;
-    nav_costmap_update(&ctx->costmap, &ctx->scratch, &ctx->params, &ctx->surface, &ctx->kioz,
-                       in->global_position_m);
-    nav_relief_update(&ctx->relief, &ctx->costmap, &ctx->surface);
+    nav_costmap_update(&ctx->costmap, &ctx->costmap_state, &ctx->params, &ctx->surface,
+                       &ctx->surface_state);
+    nav_costmap_mark(&ctx->costmap, &ctx->params, &ctx->kioz, in->global_position_m);
+    nav_relief_update(&ctx->relief, &ctx->costmap, &ctx->costmap_state, &ctx->surface);
     ctx->is_analyzed = 1U;
 
     for (uint32_t k = 0U; k < (uint32_t) NAV_COSTMAP_CELLS; k++)

@@ -5,8 +5,6 @@
  */
 #include "nav_relief.h"
 
-#include <string.h>
-
 #define SIDE ((int32_t) NAV_CELLS_PER_COST_CELL)
 #define MIDDLE (0.5 * ((double) NAV_CELLS_PER_COST_CELL - 1.0))
 #define NOTHING_M 1.0e9
@@ -48,24 +46,33 @@ static nav_relief_cell_t relief_of(const nav_cost_cell_t *cell,
 
 void nav_relief_update(nav_relief_t *relief,
                        const nav_costmap_t *costmap,
+                       const nav_costmap_state_t *state,
                        const nav_surface_t *surface)
 {
+    const nav_relief_cell_t nothing = {0.0F, 0.0F, 0U};
     const int32_t last = NAV_HEIGHTMAP_SIZE - SIDE;
 
-    (void) memset(relief, 0, sizeof(*relief));
     for (int32_t row = 0; row < NAV_COSTMAP_SIZE; row++)
     {
         const int32_t surface_row = ((costmap->origin_row + row) * SIDE) - surface->origin_row;
         for (int32_t col = 0; col < NAV_COSTMAP_SIZE; col++)
         {
             const int32_t surface_col = ((costmap->origin_col + col) * SIDE) - surface->origin_col;
-            if ((surface_row >= 0) && (surface_row <= last) && (surface_col >= 0) &&
-                (surface_col <= last))
+            const int32_t index = (row * NAV_COSTMAP_SIZE) + col;
+            if ((surface_row < 0) || (surface_row > last) || (surface_col < 0) ||
+                (surface_col > last))
             {
-                const int32_t index = (row * NAV_COSTMAP_SIZE) + col;
+                relief->cells[index] = nothing;
+            }
+            else if (state->fitted_at[index] == state->surface_count)
+            {
                 const int32_t first = (surface_row * NAV_HEIGHTMAP_SIZE) + surface_col;
                 relief->cells[index] =
                     relief_of(&costmap->cells[index], &surface->z_site_m[first], surface->cell_m);
+            }
+            else
+            {
+                /* neither its ground nor its plane has changed */
             }
         }
     }

@@ -229,38 +229,46 @@ static touch_t touch_at(const track_t *track, double foot_u_m, double above_m)
     return touch;
 }
 
+/** Ground between two points: straight but for a bulge, and nowhere higher than its highest cell. */
+typedef struct
+{
+    touch_t from;
+    touch_t to;
+    double bulge_m;
+    double over_m;
+} stretch_t;
+
 /**
- * Raises the highest hub by the ground from one point to another, straight but for a bulge, over all
- * places within half_m of the middle: by its end, and by where the disc is parallel to it. Outside the
- * places that is at radius * slope / sqrt(1 + slope^2) from the nearest of them.
+ * Raises the highest hub by a stretch of ground, over all places within half_m of the middle: by its
+ * end, and by where the disc is parallel to it. Outside the places that is at
+ * radius * slope / sqrt(1 + slope^2) from the nearest of them.
  */
 static void raise_along(const track_t *track,
                         double half_m,
-                        double bulge_m,
-                        const touch_t *from,
-                        const touch_t *to,
+                        const stretch_t *stretch,
                         double *high_m)
 {
     const double radius_m = track->radius_m;
+    const touch_t *from = &stretch->from;
+    const touch_t *to = &stretch->to;
+    const double first_m = nav_min(from->u_m, to->u_m);
+    const double last_m = nav_max(from->u_m, to->u_m);
+    const double near_m = nav_max(nav_max(first_m, -last_m) - half_m, 0.0);
     const double to_along_m = nav_max(fabs(to->u_m) - half_m, 0.0);
-    const double near_m = nav_max(nav_min(fabs(from->u_m), fabs(to->u_m)) - half_m, 0.0);
     if (to_along_m <= radius_m)
     {
         *high_m = nav_max(*high_m, to->eta_m + disc_m(radius_m, to_along_m));
     }
-    if ((near_m < radius_m) &&
-        ((nav_max(from->eta_m, to->eta_m) + bulge_m + disc_m(radius_m, near_m)) > *high_m) &&
-        (fabs(to->u_m - from->u_m) > PARALLEL))
+    if ((near_m < radius_m) && ((stretch->over_m + disc_m(radius_m, near_m)) > *high_m) &&
+        ((last_m - first_m) > PARALLEL))
     {
         const double slope = (to->eta_m - from->eta_m) / (to->u_m - from->u_m);
         const double upright = 1.0 / sqrt(1.0 + (slope * slope));
         const double outward_m = half_m + (radius_m * fabs(slope) * upright);
-        const double far_u_m = (slope < 0.0) ? -outward_m : outward_m;
-        const double u_m =
-            nav_clamp(far_u_m, nav_min(from->u_m, to->u_m), nav_max(from->u_m, to->u_m));
+        const double u_m = nav_clamp((slope < 0.0) ? -outward_m : outward_m, first_m, last_m);
         const double along_m = nav_max(fabs(u_m) - half_m, 0.0);
-        *high_m = nav_max(*high_m, (from->eta_m + (slope * (u_m - from->u_m)) + bulge_m) +
-                                       disc_m(radius_m, along_m));
+        const double eta_m = from->eta_m + (slope * (u_m - from->u_m)) + stretch->bulge_m;
+        *high_m = nav_max(*high_m, nav_min(eta_m, stretch->over_m) + disc_m(radius_m, along_m));
     }
 }
 
@@ -374,22 +382,23 @@ static void raise_in_cell(const track_t *track,
     const double bulge_m =
         nav_max(-0.25 * lanes->minor_per_major * twist_m * length * length, 0.0) *
         ground->cos_slope;
-    const bool is_higher = ((over_m * ground->cos_slope) + crossing->reach_m) > *high_m;
-    touch_t ends[2];
-    for (uint32_t end = 0U; (end < 2U) && is_higher; end++)
+    stretch_t stretch = {.bulge_m = bulge_m, .over_m = over_m * ground->cos_slope};
+    touch_t *ends[2] = {&stretch.from, &stretch.to};
+
+    if ((stretch.over_m + crossing->reach_m) > *high_m)
     {
-        const double part = crossing->parts[end];
-        const double off =
-            (lines[0].minor + aside + (part * lanes->minor_per_major)) - (double) crossing->cell;
-        const double above_m =
-            between(between(near_0_m, next_0_m, off), between(near_1_m, next_1_m, off), part);
-        ends[end] = touch_at(
-            track, lines[0].u_m + (aside * lanes->u_per_minor) + (part * lanes->u_per_major),
-            above_m);
-    }
-    if (is_higher)
-    {
-        raise_along(track, track->places->half_u_m, bulge_m, &ends[0], &ends[1], high_m);
+        for (uint32_t end = 0U; end < 2U; end++)
+        {
+            const double part = crossing->parts[end];
+            const double off = (lines[0].minor + aside + (part * lanes->minor_per_major)) -
+                               (double) crossing->cell;
+            const double above_m =
+                between(between(near_0_m, next_0_m, off), between(near_1_m, next_1_m, off), part);
+            *ends[end] = touch_at(
+                track, lines[0].u_m + (aside * lanes->u_per_minor) + (part * lanes->u_per_major),
+                above_m);
+        }
+        raise_along(track, track->places->half_u_m, &stretch, high_m);
     }
 }
 
@@ -442,10 +451,13 @@ static void raise_along_inner(const track_t *track, const line_t lines[2], doubl
     if (has_inner(track, &lines[0]) || has_inner(track, &lines[1]))
     {
         const double half_m = track->places->half_u_m + track->half_u_m;
-        const touch_t from = touch_at(track, lines[0].u_m, inner_high_m(track, &lines[0]));
-        const touch_t to = touch_at(track, lines[1].u_m, inner_high_m(track, &lines[1]));
-        raise_along(track, half_m, 0.0, &from, &to, high_m);
-        raise_along(track, half_m, 0.0, &to, &from, high_m);
+        const touch_t first = touch_at(track, lines[0].u_m, inner_high_m(track, &lines[0]));
+        const touch_t last = touch_at(track, lines[1].u_m, inner_high_m(track, &lines[1]));
+        const double over_m = nav_max(first.eta_m, last.eta_m);
+        const stretch_t forward = {first, last, 0.0, over_m};
+        const stretch_t backward = {last, first, 0.0, over_m};
+        raise_along(track, half_m, &forward, high_m);
+        raise_along(track, half_m, &backward, high_m);
     }
 }
 

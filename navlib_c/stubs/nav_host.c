@@ -56,3 +56,7 @@ const nav_record_def_t nav_host_record_defs[NAV_HOST_RECORD_COUNT] = {
 
 #define NAV_DP_DEF(value, name, type, doc) {(value), NAV_TEXT(name), NAV_TEXT(type), (doc)},
 const nav_dp_def_t nav_host_dp_defs[NAV_HOST_DP_COUNT] = {NAV_HOST_DP_TABLE(NAV_DP_DEF)};
+
+#define NAV_HOST_EVR_DEF(value, name, severity, count, text, cause, args)                          \
+    {(value), NAV_EVR_##severity, (count), NAV_TEXT(name), (text), (cause), (args)},
+const nav_evr_def_t nav_host_evr_defs[NAV_HOST_EVR_COUNT] = {NAV_HOST_EVR_TABLE(NAV_HOST_EVR_DEF)};

@@ -55,7 +55,33 @@ class NavCostmap : public ::testing::Test
 
     void update(double margin_m = 0.0)
     {
-        nav_costmap_update(map.get(), scratch.get(), &params, surface.get(), &kioz, margin_m);
+        mark_all();
+        update_changed(margin_m);
+    }
+
+    // all blocks changed
+    void mark_all()
+    {
+        changes->surface_count += 1U;
+        std::fill(std::begin(changes->changed_at), std::end(changes->changed_at),
+                  changes->surface_count);
+    }
+
+    void update_changed(double margin_m = 0.0)
+    {
+        nav_costmap_update(map.get(), state.get(), &params, surface.get(), changes.get());
+        nav_costmap_mark(map.get(), &params, &kioz, margin_m);
+    }
+
+    // an update of what changed leaves the same cells as one of all
+    void expect_cells_of_all()
+    {
+        auto copy = std::make_unique<nav_costmap_t>(*map);
+        auto fresh = std::make_unique<nav_costmap_state_t>();
+        nav_costmap_update(copy.get(), fresh.get(), &params, surface.get(), changes.get());
+        nav_costmap_mark(copy.get(), &params, &kioz, 0.0);
+        update_changed();
+        ASSERT_EQ(0, std::memcmp(copy->cells, map->cells, sizeof(map->cells)));
     }
 
     nav_cost_cell_t &at(double x, double y)
@@ -156,7 +182,8 @@ class NavCostmap : public ::testing::Test
     nav_kioz_t kioz = {};
     std::unique_ptr<nav_costmap_t> map = std::make_unique<nav_costmap_t>();
     std::unique_ptr<nav_surface_t> surface = std::make_unique<nav_surface_t>();
-    std::unique_ptr<nav_costmap_scratch_t> scratch = std::make_unique<nav_costmap_scratch_t>();
+    std::unique_ptr<nav_surface_state_t> changes = std::make_unique<nav_surface_state_t>();
+    std::unique_ptr<nav_costmap_state_t> state = std::make_unique<nav_costmap_state_t>();
 };
 
 } // namespace
@@ -567,4 +594,72 @@ TEST_F(NavCostmap, ClearingFeedbackOpensEveryCell)
     nav_costmap_clear_feedback(map.get());
     EXPECT_EQ(at(3, 3).ace_failed_count, 0U);
     EXPECT_EQ(at(-24, 24).ace_reason, NAV_REASON_NONE);
+}
+
+TEST_F(NavCostmap, UpdatingWhatChangedIsTheSameToTheLastBitAsUpdatingAll)
+{
+    auto heightmap = std::make_unique<nav_heightmap_t>();
+    nav_heightmap_init(heightmap.get(), &params);
+    std::mt19937_64 random(12);
+    std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+    for (double patch : {3.0, 5.0, 7.0})
+    {
+        params.costmap_patch_cells = patch;
+        *state = {};
+        double x = 0.0;
+        double y = 0.0;
+        for (uint32_t step = 0; step < 40U; step++)
+        {
+            x += 0.8 * static_cast<double>(unit(random)) + ((step % 10U == 9U) ? 13.0 : 0.3);
+            y += 0.8 * static_cast<double>(unit(random));
+            const float z = (step < 20U) ? 0.0F : 200.0F; // with another reference
+            std::vector<nav_point_t> points(5000U);
+            for (nav_point_t &p : points)
+            {
+                p = {4.0F * unit(random) + 4.0F, 5.0F * unit(random), z + unit(random)};
+            }
+            const nav_pose_t pose = {x, y, 0.0, 0.0, 0.0, 3.0 * static_cast<double>(unit(random))};
+            ASSERT_TRUE(nav_heightmap_center(heightmap.get(), x, y));
+            nav_heightmap_merge(heightmap.get(), &pose, step, step + 1U, points.data(), 5000U);
+            nav_heightmap_surface(heightmap.get(), &params, step, changes.get(), surface.get());
+            nav_costmap_recenter(map.get(), &params, x, y);
+            ASSERT_NO_FATAL_FAILURE(expect_cells_of_all()) << step;
+        }
+        EXPECT_GT(known_count(), 300);
+        heightmap->is_placed = 0U;
+        *changes = {};
+    }
+}
+
+TEST_F(NavCostmap, WithNothingNewNoCellIsComputedAgain)
+{
+    shape([](double, double) { return 1.0; });
+    update();
+    at(2.0, 3.0).tilt_rad = 7.0F; // what only computing could replace
+    update_changed();
+    EXPECT_EQ(at(2.0, 3.0).tilt_rad, 7.0F);
+    update();
+    EXPECT_EQ(at(2.0, 3.0).tilt_rad, 0.0F);
+}
+
+TEST_F(NavCostmap, AChangeReachesAsFarAsItsPatches)
+{
+    shape([](double, double) { return 1.0; });
+    update();
+    for (nav_cost_cell_t &cell : map->cells)
+    {
+        cell.tilt_rad = 7.0F;
+    }
+    changes->surface_count += 1U;
+    changes->changed_at[nav_heightmap_block(3, 3)] = changes->surface_count; // cell 0, 0
+    update_changed();
+    const int half = static_cast<int>(params.costmap_patch_cells) / 2;
+    for (int row = -10; row <= 10; row++)
+    {
+        for (int col = -10; col <= 10; col++)
+        {
+            const bool is_reached = std::max(std::abs(row), std::abs(col)) <= half;
+            ASSERT_EQ(by_global(row, col).tilt_rad, is_reached ? 0.0F : 7.0F) << row << " " << col;
+        }
+    }
 }

@@ -201,8 +201,8 @@ TEST(Ground, costmap_cells_that_stick_out_of_the_surface_are_not_given)
     /* moving on by two heightmap cells leaves the surface's edges inside costmap cells */
     nav_ctx_t &ctx = *scene.ctx;
     ASSERT_TRUE(nav_heightmap_center(&ctx.heightmap, 0.25, 0.25));
-    nav_heightmap_surface(&ctx.heightmap, &ctx.params, 1.0, &ctx.surface);
-    nav_relief_update(&ctx.relief, &ctx.costmap, &ctx.surface);
+    nav_heightmap_surface(&ctx.heightmap, &ctx.params, 1.0, &ctx.surface_state, &ctx.surface);
+    nav_relief_update(&ctx.relief, &ctx.costmap, &ctx.costmap_state, &ctx.surface);
     const nav_ground_t ground = placed(scene, 0.0, 0.0, 0.0);
     nav_cost_box_t cells;
     const nav_box_t south = {-14.6, 0.0, 0.05, 0.05};

@@ -51,9 +51,39 @@ class NavHeightmap : public ::testing::Test
         cell(row, col) = {z_m, time_s, 1U, 1U};
     }
 
+    // all blocks: cells are set by hand
     void make_surface(double time_s = 0.0)
     {
-        nav_heightmap_surface(map.get(), &params, time_s, surface.get());
+        std::fill(std::begin(map->is_changed), std::end(map->is_changed), uint8_t{1});
+        nav_heightmap_surface(map.get(), &params, time_s, state.get(), surface.get());
+    }
+
+    // as a new state would make it, from a copy of the map
+    std::vector<float> made_anew(double time_s) const
+    {
+        auto copy = std::make_unique<nav_heightmap_t>(*map);
+        auto fresh_state = std::make_unique<nav_surface_state_t>();
+        auto fresh = std::make_unique<nav_surface_t>();
+        nav_heightmap_surface(copy.get(), &params, time_s, fresh_state.get(), fresh.get());
+        return {std::begin(fresh->z_site_m), std::end(fresh->z_site_m)};
+    }
+
+    void expect_surface_of_all(double time_s)
+    {
+        const std::vector<float> expected = made_anew(time_s);
+        nav_heightmap_surface(map.get(), &params, time_s, state.get(), surface.get());
+        ASSERT_EQ(0, std::memcmp(expected.data(), surface->z_site_m, sizeof(surface->z_site_m)));
+    }
+
+    bool is_stamped(int32_t row, int32_t col) const
+    {
+        return state->changed_at[nav_heightmap_block(row, col)] == state->surface_count;
+    }
+
+    int stamped_count() const
+    {
+        return static_cast<int>(std::count(std::begin(state->changed_at),
+                                           std::end(state->changed_at), state->surface_count));
     }
 
     // by global index
@@ -71,6 +101,7 @@ class NavHeightmap : public ::testing::Test
 
     nav_params_t params = {};
     std::unique_ptr<nav_heightmap_t> map = std::make_unique<nav_heightmap_t>();
+    std::unique_ptr<nav_surface_state_t> state = std::make_unique<nav_surface_state_t>();
     std::unique_ptr<nav_surface_t> surface = std::make_unique<nav_surface_t>();
 };
 
@@ -201,7 +232,9 @@ TEST_F(NavHeightmap, ABoundaryBelongsToTheCellNorthOrEastOfIt)
         ASSERT_EQ(cell(row, 0).point_count, 1U) << row;
         if (row > -kSize / 2)
         {
-            merge({{std::nextafterf(x, -100.0F), -0.01F, 1.0F}}, 8U);
+            // the last number south of it; at 0 there is none that a sum with half the map could hold
+            const float south = std::min(std::nextafterf(x, -100.0F), x - 1e-12F);
+            merge({{south, -0.01F, 1.0F}}, 8U);
             ASSERT_EQ(cell(row - 1, -1).image_id, 8U) << row;
         }
     }
@@ -452,6 +485,91 @@ TEST_F(NavHeightmap, FillingAgreesWithTheDefinitionEverywhere)
                 else
                 {
                     ASSERT_EQ(made, NAV_SURFACE_UNKNOWN_M);
+                }
+            }
+        }
+    }
+}
+
+TEST_F(NavHeightmap, WithNothingNewNothingIsMadeAgain)
+{
+    merge({{1.0F, 1.0F, 0.5F}});
+    expect_surface_of_all(1.0);
+    EXPECT_EQ(stamped_count(), NAV_BLOCKS);
+    expect_surface_of_all(2.0);
+    EXPECT_EQ(stamped_count(), 0);
+    EXPECT_EQ(height(10, 10), 0.5F);
+}
+
+TEST_F(NavHeightmap, APointChangesItsBlockAndThoseBesideIt)
+{
+    expect_surface_of_all(1.0);
+    merge({{1.02F, 1.02F, 0.5F}});
+    expect_surface_of_all(2.0);
+    EXPECT_EQ(stamped_count(), 9);
+    EXPECT_TRUE(is_stamped(10, 10));
+    EXPECT_TRUE(is_stamped(9, 15));
+    EXPECT_FALSE(is_stamped(4, 10));
+}
+
+TEST_F(NavHeightmap, ABlockWhoseOldestHeightExpiresIsMadeAgain)
+{
+    params.heightmap_expiry_s = 10.0;
+    merge({{1.02F, 1.02F, 0.5F}}, 1U, 0.0);
+    merge({{1.12F, 1.02F, 0.7F}, {5.02F, 5.02F, 0.7F}}, 2U, 5.0);
+    expect_surface_of_all(6.0);
+    expect_surface_of_all(10.0);
+    EXPECT_EQ(stamped_count(), 0);
+    expect_surface_of_all(10.5);
+    EXPECT_EQ(stamped_count(), 9);
+    EXPECT_EQ(height(10, 10), NAV_SURFACE_UNKNOWN_M);
+    EXPECT_EQ(height(11, 10), 0.7F);
+    expect_surface_of_all(15.5);
+    EXPECT_EQ(known_count(), 0);
+    expect_surface_of_all(6.0); // backwards: it is known again
+    EXPECT_EQ(known_count(), 3);
+}
+
+TEST_F(NavHeightmap, MakingWhatChangedIsTheSameToTheLastBitAsMakingAll)
+{
+    std::mt19937_64 random(11);
+    std::uniform_int_distribution<int> steps(-14, 14);
+    std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+    params.heightmap_expiry_s = 40.0;
+    double x = 0.0;
+    double y = 0.0;
+    for (uint32_t step = 0; step < 150U; step++)
+    {
+        for (uint32_t move = 0; move < random() % 3U; move++) // none, one, or one upon another
+        {
+            x += 0.1 * ((step % 40U == 39U) ? 350 : steps(random));
+            y += 0.1 * ((step % 50U == 49U) ? -299 : steps(random));
+            ASSERT_TRUE(nav_heightmap_center(map.get(), x, y));
+        }
+        const std::vector<float> before(std::begin(surface->z_site_m), std::end(surface->z_site_m));
+        const int32_t old_row = surface->origin_row;
+        const int32_t old_col = surface->origin_col;
+        std::vector<nav_point_t> points(static_cast<size_t>(random() % 3000U));
+        for (nav_point_t &p : points)
+        {
+            p = {4.0F * unit(random) + 9.0F, 7.0F * unit(random), unit(random)};
+        }
+        merge(points, step + 1U, step,
+              {x, y, 0.0, 0.0, 0.0, 6.0 * static_cast<double>(unit(random))});
+        ASSERT_NO_FATAL_FAILURE(expect_surface_of_all(step));
+        for (int32_t r = 0; r < kSize; r++)
+        {
+            for (int32_t c = 0; c < kSize; c++)
+            {
+                const int32_t row = surface->origin_row + r;
+                const int32_t col = surface->origin_col + c;
+                const bool is_old = row >= old_row && row < old_row + kSize && col >= old_col &&
+                                    col < old_col + kSize;
+                const float now = surface->z_site_m[r * kSize + c];
+                if (!is_old || (step == 0U) ||
+                    now != before[static_cast<size_t>((row - old_row) * kSize + col - old_col)])
+                {
+                    ASSERT_TRUE(is_stamped(row, col)) << step << " " << row << " " << col;
                 }
             }
         }

@@ -364,6 +364,46 @@ TEST_F(Interface, turns_in_place_and_backward_arcs_are_evaluated)
     EXPECT_NEAR(-2.0, out->failing_at, 0.26);
 }
 
+/// Two contexts are driven alike; before each analysis one of them forgets what it could reuse.
+TEST_F(Interface, an_analysis_does_not_depend_on_what_earlier_ones_left_to_reuse)
+{
+    Scene forgetful;
+    forgetful.show(flat);
+    for (int step = 0; step < 12; step++)
+    {
+        nav_analyze_terrain_out_t out[2];
+        analyze.time_s = 5.0 + 400.0 * step; // the first clouds expire on the way
+        analyze.pose.x_site_m = 1.3 * step;
+        analyze.pose.y_site_m = -0.7 * step;
+        forgetful.ctx->surface_state = {};
+        forgetful.ctx->costmap_state = {};
+        nav_ctx_t *contexts[2] = {scene.ctx.get(), forgetful.ctx.get()};
+        for (int k = 0; k < 2; k++)
+        {
+            nav_process_disparity_out_t merged;
+            cloud->image_id = 2000U + static_cast<uint32_t>(step);
+            cloud->time_s = analyze.time_s;
+            cloud->pose = analyze.pose;
+            cloud->point_count = 4000U;
+            for (uint32_t p = 0; p < cloud->point_count; p++)
+            {
+                const double angle = 0.01 * p;
+                cloud->points[p] = {static_cast<float>(4.0 + 2.0 * std::cos(angle)),
+                                    static_cast<float>(0.001 * p * std::sin(angle)),
+                                    static_cast<float>(0.3 * std::sin(0.37 * angle))};
+            }
+            ASSERT_EQ(NAV_OK, nav_process_disparity(contexts[k], cloud.get(), &merged));
+            ASSERT_EQ(NAV_OK, nav_analyze_terrain(contexts[k], &analyze, &out[k]));
+            nav_stub_clear();
+        }
+        ASSERT_EQ(0, std::memcmp(&out[0], &out[1], sizeof(out[0]))) << step;
+        ASSERT_EQ(0,
+                  std::memcmp(&scene.ctx->surface, &forgetful.ctx->surface, sizeof(nav_surface_t)));
+        ASSERT_EQ(0,
+                  std::memcmp(&scene.ctx->costmap, &forgetful.ctx->costmap, sizeof(nav_costmap_t)));
+    }
+}
+
 TEST_F(Interface, a_keep_in_zone_is_shrunk_by_the_global_uncertainty)
 {
     nav_zone_t zone = {};

@@ -68,8 +68,28 @@ TEST(Relief, a_cell_without_a_plane_has_none)
     scene.show(flat);
     const uint32_t index = cell_at(scene, 1.0, 1.0);
     scene.ctx->costmap.cells[index].is_known = 0U;
-    nav_relief_update(&scene.ctx->relief, &scene.ctx->costmap, &scene.ctx->surface);
+    nav_relief_update(&scene.ctx->relief, &scene.ctx->costmap, &scene.ctx->costmap_state,
+                      &scene.ctx->surface);
     EXPECT_EQ(0U, scene.ctx->relief.cells[index].is_whole);
+}
+
+TEST(Relief, is_the_same_whether_made_step_by_step_or_at_once)
+{
+    const auto world = [](double x, double y)
+    { return 0.1 * std::sin(5.0 * x) * std::cos(4.0 * y); };
+    Scene grown;
+    grown.show(world);
+    const auto changed = [&](double x, double y)
+    { return world(x, y) + ((std::hypot(x - 4.0, y + 3.0) < 0.5) ? 0.3 : 0.0); };
+    grown.show(changed);
+    Scene fresh;
+    fresh.show(changed);
+    for (int cell = 0; cell < NAV_COSTMAP_CELLS; cell++)
+    {
+        ASSERT_EQ(fresh.ctx->relief.cells[cell].is_whole, grown.ctx->relief.cells[cell].is_whole);
+        ASSERT_EQ(fresh.ctx->relief.cells[cell].above_m, grown.ctx->relief.cells[cell].above_m);
+        ASSERT_EQ(fresh.ctx->relief.cells[cell].below_m, grown.ctx->relief.cells[cell].below_m);
+    }
 }
 
 } // namespace

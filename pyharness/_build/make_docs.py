@@ -19,10 +19,11 @@ def pages() -> Mapping[str, str]:
         + "Sources: [U] geometry of NASA's M2020 URDF; [S] SIM, IEEE Aerospace 2020; [E] published"
         " ENav numbers;\n[C] chosen here, with the reason. None of [C] is flight data. Set them"
         " with `--set navlib.NAME=VALUE`.\n\n" + tables.to_markdown(tables.param_rows()),
-        "events.md": "# Event reports of Navlib\n\n"
+        "events.md": "# Event reports\n\n"
         + NOTE
         + "A `{}` in a text stands for an argument; the last column gives their meaning in order."
-        " Calls are named by\nthe kind of their [data product](data_products.md).\n\n"
+        " Calls are named by\nthe kind of their [data product](data_products.md). Events from 101 on"
+        " are the [executive](executive.md)'s and stand\nin products of the kind HOST_EVR.\n\n"
         + tables.to_markdown(tables.evr_rows()),
         "data_products.md": "# Data products\n\n"
         + NOTE

@@ -11,11 +11,20 @@ from pyharness.dp import Kind, native_schema, new_message
 from pyharness.params import param_values
 from pyharness.planner import Planner
 from pyharness.records import DriveInfo, Outcome, RecordStream, Waypoint, end_payload
-from pyharness.status import Reason, Status
+from pyharness.status import Mode, Reason, Status
+from pyharness.tests.executive_drive import Drive
 from pyharness.tests.quick_drive import record_drive
 
 TICK_S = 0.125
 SPEED_M_S = 0.05
+
+
+@dataclass(frozen=True)
+class ExpectedSlip:
+    north_m: float = 0.0
+    east_m: float = 0.0
+    sigma_m: float = 0.0
+    yaw_sigma_rad: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -56,6 +65,8 @@ class FakeWorld:
         self.arc_ticks = 0
         self.fixes = []
         self.images = []
+        self.looks = []
+        self.slip = ExpectedSlip()
 
     @property
     def time_s(self):
@@ -102,9 +113,23 @@ class FakeWorld:
         self.fixes.append(self.time_s)
         return True
 
-    def image(self):
-        self.images.append(self.time_s)
+    def image(self, azimuths_deg=None):
+        (self.images if azimuths_deg is None else self.looks).append(self.time_s)
         return np.full((10, 3), len(self.images), dtype=np.float32)
+
+    def ground_around(self, radius_m):
+        return np.full((20, 3), radius_m, dtype=np.float32)
+
+    def place(self, north_m, east_m, yaw_rad):
+        self.arc = None
+        self.state = replace(self.state, x_m=north_m, y_m=east_m, yaw_rad=yaw_rad)
+        return self.state
+
+    def slip_ahead(self, length_m, heading_change_rad):  # noqa: ARG002
+        return self.slip
+
+    def sigma_position_after_m(self, distance_m):
+        return self.state.sigma_position_m + 0.1 * distance_m
 
     def steering_duration_s(self, curvature_from, curvature_to):
         return 0.0 if curvature_from == curvature_to else 10.0
@@ -118,8 +143,11 @@ class FakePlanner(Planner):
         self.calls = []
         self.arcs = [(1.0, 0.0)]  # None: no path
         self.is_safe = [True]
+        self.is_map_known = False
+        self.zone_north_m = math.inf  # Unguarded arcs that end beyond it are refused
         self.ace_evaluations = 10
         self.refuses = None
+        self.reject_reason = Reason.TILT
 
     def _answer(self, name, kind, request):
         self.calls.append((name, float(request["time_s"]), request))
@@ -140,12 +168,24 @@ class FakePlanner(Planner):
         answer["ace_evaluations"] = self.ace_evaluations
         if arc is None:
             answer["status"] = Status.NO_PATH
-            answer["rejections"][Reason.TILT] = 1694
+            answer["rejections"][self.reject_reason] = 1694
         else:
             answer["arc"]["length_m"], answer["arc"]["heading_change_rad"] = arc
         return answer
 
     def _evaluate_arc(self, request):
+        arc = request["arc"]
+        if arc["length_m"] == 0.0 and arc["heading_change_rad"] == 0.0:
+            answer = self._answer("check_map", Kind.EVALUATE_ARC_OUT, request)
+            answer["is_safe"] = self.is_map_known
+            answer["reason"] = 0 if self.is_map_known else Reason.UNKNOWN
+            return answer
+        if request["mode"] == Mode.UNGUARDED:
+            answer = self._answer("check_zones", Kind.EVALUATE_ARC_OUT, request)
+            end_m = float(request["pose"]["x_site_m"] + arc["length_m"])
+            answer["is_safe"] = end_m <= self.zone_north_m
+            answer["reason"] = 0 if answer["is_safe"] else Reason.KIOZ
+            return answer
         answer = self._answer("evaluate", Kind.EVALUATE_ARC_OUT, request)
         answer["is_safe"] = self.is_safe.pop(0) if len(self.is_safe) > 1 else self.is_safe[0]
         answer["reason"] = 0 if answer["is_safe"] else Reason.TILT
@@ -158,8 +198,23 @@ def fake_world():
 
 
 @pytest.fixture
+def expected_slip():
+    return ExpectedSlip
+
+
+@pytest.fixture
 def fake_planner():
     return FakePlanner
+
+
+@pytest.fixture
+def make_drive():
+    """Make a drive; the world moves by the given share of what is commanded."""
+
+    def make(motion_share=1.0, **settings):
+        return Drive(FakeWorld(motion_share), FakePlanner, **settings)
+
+    return make
 
 
 @pytest.fixture

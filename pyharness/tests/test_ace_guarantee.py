@@ -87,16 +87,20 @@ def test_every_settled_state_lies_inside_its_bounds(
     assert np.mean(states["converged"]) > 0.999
     navlib = navlib_with(terrain)
     uncertified = 0
+    missed = 0
     accepted = 0
     for pose, state in zip(poses, states, strict=True):
         bounds = bounds_at(navlib, pose)
         if not bounds["is_certified"]:
             uncertified += 1
             assert bounds["reason"] != Reason.NONE
+            missed += bounds["reason"] == Reason.UNEXPECTED
         elif state["converged"]:
             outside = {k: v for k, v in overshoot(state, bounds).items() if v > TOLERANCE}
             assert not outside, f"at {pose.tolist()}"
         accepted += bounds["reason"] == Reason.NONE
-    assert uncertified < 0.015 * count
+    # beside large rocks no range of states is consistent; their height alone refuses the pose
+    assert uncertified < 0.15 * count
+    assert missed < 0.002 * count
     # a bound that refuses everything would promise nothing
     assert accepted > 0.4 * count

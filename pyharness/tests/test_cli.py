@@ -2,12 +2,14 @@
 """The command line from outside: what it prints and the exit code."""
 
 import json
+import socket
 import subprocess
 import sys
 
 import pytest
 
 from pyharness import cli
+from pyharness.tests.socket_client import SocketClient
 
 FLAT = ["--set", "terrain.size_m=40", "--set", "terrain.cfa=0", "--start=-10,0,0"]
 QUICK = [*FLAT, "--goal=10,0", "--set", "executive.time_limit_s=30"]
@@ -149,3 +151,50 @@ def test_help_does_not_load_what_only_drives_need():
     code = "import sys, pyharness.cli; print([m for m in ('numpy', '_navlib') if m in sys.modules])"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout == "[]\n"
+
+
+def test_a_drive_with_a_port_is_run_by_its_client(tmp_path):
+    code = "import sys; sys.argv = ['enav', *sys.argv[1:]]; from pyharness.cli import main; main()"
+    arguments = ["drive", *QUICK, "--port", "0", "-o", str(tmp_path / "d")]
+    with subprocess.Popen(
+        [sys.executable, "-c", code, *arguments], stderr=subprocess.PIPE, text=True, cwd=tmp_path
+    ) as process:
+        line = process.stderr.readline()
+        port = int(line.split("127.0.0.1:")[1].split()[0])
+        client = SocketClient(port)
+        client.ask(command="run")
+        lines = client.read_all()
+        client.close()
+        assert process.wait(60) == 3
+        process.stderr.close()
+    assert lines[0]["type"] == "schema"
+    assert any(item["type"] == "end" and item["outcome"] == "time_limit" for item in lines)
+    assert json.loads((tmp_path / "d/summary.json").read_text())["outcome"] == "time_limit"
+
+
+def test_a_port_in_use_is_2_and_leaves_nothing(enav, tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        code, _, err = enav("drive", *QUICK, "--port", str(port), "-o", "d")
+    assert code == 2
+    assert err.startswith(f"enav: port {port} of 127.0.0.1: ")
+    assert len(err.splitlines()) == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_arcs_that_were_driven_are_0(enav):
+    arcs = "[{length_m: 2, mode: unguarded}]"
+    code, out, _ = enav("drive", *FLAT, "--set", f"arcs={arcs}", "--set", "slip.enabled=false")
+    assert code == 0
+    assert out.startswith("arcs_driven: 2.0 m")
+
+
+def test_the_modes_are_driven_on_a_scenario_of_ones_own(enav, tmp_path):
+    (tmp_path / "s.yaml").write_text(
+        "name: s\nterrain: {size_m: 40, cfa: 0}\nstart: [-10, 0, 0]\ngoal: [-7, 0]\n"
+    )
+    code, out, _ = enav("modes", "--scenario", "s.yaml", "-o", "m")
+    assert code == 0
+    assert [line.split()[0] for line in out.splitlines()[:4]] == list(cli.MODES)
+    assert (tmp_path / "m/modes.png").exists()
+    assert (tmp_path / "m/guarded/summary.json").exists()

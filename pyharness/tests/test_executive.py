@@ -4,74 +4,14 @@
 import itertools
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
-from pyharness.dp import Kind, native_schema, new_message
-from pyharness.executive import Executive, SafetyWatch
-from pyharness.executive_config import ComputeTimes, ExecutiveConfig
-from pyharness.params import param_values
-from pyharness.records import RecordStream, Waypoint
+from pyharness.dp import Kind, native_schema
+from pyharness.executive_config import ComputeTimes
+from pyharness.faults import SafetyWatch
+from pyharness.records import Waypoint
 from pyharness.status import Activity, Mode
-from pyharness.thinker import Thinker
-
-ARC_S = 20.0  # 1 m in the fake world
-FAR = Waypoint(15.0, 0.0, 1.0, "avoid_all")
-
-
-class Drive:
-    """One drive with everything about it at hand."""
-
-    def __init__(self, world, planner_class, waypoints=(FAR,), safety=None, **settings):
-        self.records = []
-        stream = RecordStream([self.records.append])
-        self.world = world
-        self.planner = planner_class(param_values({}), stream.publish)
-        self.config = ExecutiveConfig(**settings)
-        self.looks = []
-        self.executive = Executive(
-            world,
-            self._look_around,
-            Thinker(self.planner, self.config.compute),
-            waypoints,
-            self.config,
-            safety or SafetyWatch(lambda _: None, lambda *_: False),
-            stream.publish,
-        )
-
-    def _look_around(self):
-        self.looks.append(self.world.time_s)
-        return np.zeros((5, 3), np.float32)
-
-    def run(self):
-        self.outcome = self.executive.run(new_message(Kind.SET_KIOZ_IN))
-        return self.outcome
-
-    def calls(self, name):
-        return [
-            (time_s, request) for called, time_s, request in self.planner.calls if called == name
-        ]
-
-    def timeline(self, activity):
-        schema = native_schema()
-        items = (
-            schema.decode(item.kind, item.payload)
-            for item in self.records
-            if item.kind == Kind.TIMELINE
-        )
-        return [
-            (float(item["start_s"]), float(item["end_s"]), int(item["cycle"]))
-            for item in items
-            if item["activity"] == activity
-        ]
-
-
-@pytest.fixture
-def make_drive(fake_world, fake_planner):
-    def make(motion_share=1.0, **settings):
-        return Drive(fake_world(motion_share), fake_planner, **settings)
-
-    return make
+from pyharness.tests.executive_drive import ARC_S
 
 
 def test_the_drive_ends_inside_the_waydisc(make_drive):
@@ -80,14 +20,23 @@ def test_the_drive_ends_inside_the_waydisc(make_drive):
     assert drive.world.state.x_m == pytest.approx(14.0, abs=0.02)
 
 
-def test_the_first_crawl_is_made_of_short_straight_arcs_and_is_not_planned(make_drive):
-    drive = make_drive()
-    drive.run()
-    crawl_s = 5.5 * ARC_S
-    assert [item[2] for item in drive.timeline(Activity.DRIVING)][:6] == [0] * 6
-    assert min(time_s for time_s, _ in drive.calls("select")) >= crawl_s
-    assert min(time_s for time_s, _ in drive.calls("evaluate")) >= crawl_s
-    assert drive.world.images[:6] == [0.0, 20.0, 40.0, 60.0, 80.0, 100.0]
+def test_standing_to_think_the_rover_looks_and_plans_between_arcs(make_drive):
+    drive = make_drive(thinking="standing")
+    assert drive.run().is_reached
+    driving = [item for item in drive.timeline(Activity.DRIVING) if item[2] > 0]
+    times = drive.config.compute
+    think_s = times.imaging_s + times.vo_s + times.process_disparity_s + times.analyze_terrain_s
+    gaps_s = [second[0] - first[1] for first, second in itertools.pairwise(driving)]
+    assert min(gaps_s) > think_s
+    for lane in (Activity.IMAGING, Activity.PROCESS_DISPARITY, Activity.SELECT_ARC):
+        starts_s = [start_s for start_s, _, cycle in drive.timeline(lane) if cycle > 0]
+        assert not any(
+            start_s <= time_s < end_s for time_s in starts_s for start_s, end_s, _ in driving
+        )
+    # what was seen last is in the plan
+    _, request = drive.calls("select")[-1]
+    newest_s = max(float(item["time_s"]) for _, item in drive.calls("process"))
+    assert float(request["time_s"]) - newest_s == pytest.approx(think_s, abs=1.0)
 
 
 def test_the_plan_uses_terrain_seen_two_arcs_earlier(make_drive):
@@ -213,7 +162,7 @@ def test_arcs_that_stay_unsafe_are_a_fault(make_drive):
     drive.planner.is_safe = [False]
     outcome = drive.run()
     assert outcome.outcome == "unsafe_arc"
-    assert outcome.fault_detail.startswith("3 times in a row; evaluate_arc")
+    assert outcome.fault_detail.startswith("3 times in a row in mode avoid_all; evaluate_arc")
     assert "tilt" in outcome.fault_detail
 
 
@@ -230,8 +179,8 @@ def test_without_a_path_it_looks_around_and_goes_on(make_drive):
     drive = make_drive()
     drive.planner.arcs = [(1.0, 0.0), None, None, (1.0, 0.0)]
     assert drive.run().is_reached
-    assert len(drive.looks) == 2
-    imaging = [item for item in drive.timeline(Activity.IMAGING) if item[0] in drive.looks]
+    assert len(drive.world.looks) == 2
+    imaging = [item for item in drive.timeline(Activity.IMAGING) if item[0] in drive.world.looks]
     assert imaging[0][1] - imaging[0][0] == 3 * drive.config.compute.imaging_s
 
 
@@ -240,8 +189,8 @@ def test_no_path_again_and_again_is_a_fault_with_the_reasons(make_drive):
     drive.planner.arcs = [None]
     outcome = drive.run()
     assert outcome.outcome == "no_path"
-    assert outcome.fault_detail == "4 times in a row; paths rejected: tilt 1694"
-    assert len(drive.looks) == 3
+    assert outcome.fault_detail == ("4 times in a row in mode avoid_all; paths rejected: tilt 1694")
+    assert len(drive.world.looks) == 3
 
 
 def test_waypoints_are_driven_to_in_turn_each_in_its_mode(make_drive):
@@ -260,13 +209,6 @@ def test_a_goal_under_the_rover_needs_no_driving(make_drive):
     assert drive.world.ticks == 0
 
 
-def test_without_a_crawl_it_looks_before_it_moves(make_drive):
-    drive = make_drive(crawl_length_m=0.0)
-    assert drive.run().is_reached
-    assert drive.world.images[0] == 0.0
-    assert drive.timeline(Activity.DRIVING)[0][0] > 0.0
-
-
 @pytest.mark.parametrize("name", ["process", "analyze", "select", "evaluate"])
 def test_a_planner_that_refuses_ends_the_drive(make_drive, name):
     drive = make_drive()
@@ -283,11 +225,6 @@ def test_a_true_violation_ends_the_drive_and_says_what_navlib_thought(make_drive
     assert outcome.outcome == "limit_violation"
     assert "tilt 40 deg" in outcome.fault_detail
     assert "said safe" in outcome.fault_detail
-
-
-def test_a_violation_in_the_crawl_is_known_to_be_unchecked(make_drive):
-    safety = SafetyWatch(lambda truth: "bump" if truth.x_m > 2.0 else None, lambda *_: False)
-    assert "driven unchecked" in make_drive(safety=safety).run().fault_detail
 
 
 def test_a_true_position_in_a_zone_is_a_fault(make_drive):

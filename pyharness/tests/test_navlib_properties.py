@@ -201,8 +201,8 @@ def cost_to_go_s(navlib, goal_m, use_terrain=True, use_zones=True):
         use_terrain,
         use_zones,
     )
-    costs = ffi.buffer(getattr(ctx, "global").cost_to_go_s)
-    return np.frombuffer(costs, dtype=np.float64).reshape(SIDE, SIDE).copy()
+    costs = np.frombuffer(ffi.buffer(getattr(ctx, "global").cost_to_go_s), dtype=np.float64)
+    return costs.reshape(SIDE + 2, SIDE + 2)[1:-1, 1:-1].copy()
 
 
 @quick

@@ -39,7 +39,8 @@ class Refusing(Enav):
 
 DRIVES = {
     "unguarded": ({"mode": "unguarded"}, "goal_reached"),
-    "guarded": ({"mode": "guarded"}, "goal_reached"),
+    "guarded": ({"mode": "guarded", "terrain": ground()}, "goal_reached"),
+    "guarded among rocks": ({"mode": "guarded"}, "no_path"),
     "avoid_koz": ({"mode": "avoid_koz"}, "goal_reached"),
     "avoid_all": ({"mode": "avoid_all"}, "goal_reached"),
     "rocks": ({"terrain": ground(cfa=0.10)}, "goal_reached"),
@@ -146,9 +147,13 @@ def test_a_flipped_input_with_a_right_checksum_is_found_by_the_first_output_that
 )
 def test_a_changed_output_is_named_with_field_and_both_values(quick_drive, kind, field):
     records, schema = records_of(quick_drive)
-    index = next(i for i, item in enumerate(records) if item.kind == kind and i > 30)
     dtype = schema.kind_dtype(kind)
     offset = next(k for k in range(dtype.itemsize) if field_at(dtype, k)[0] == field)
+    index = next(
+        i
+        for i, item in enumerate(records)
+        if item.kind == kind and i > 30 and len(item.payload) > offset + 8
+    )
     original = records[index]
     records[index] = changed(original, offset + 1, 0x10)
     difference = compare(records, schema, Enav).difference

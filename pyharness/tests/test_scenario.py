@@ -8,6 +8,7 @@ from pyharness.params import param_values
 from pyharness.scenario import (
     Scenario,
     check_places,
+    directed_arcs,
     drive_info,
     load_scenario,
     make_terrain,
@@ -117,6 +118,34 @@ def test_the_seed_drives_the_terrain_unless_that_has_its_own():
     assert load_scenario(None, {"seed": 9, "terrain.seed": 2}).terrain.seed == 2
 
 
+@pytest.mark.parametrize("text", ["", "vehicle: perseverance", "vehicle: mine.yaml", "inline"])
+def test_a_part_of_any_vehicle_can_be_set(tmp_path, text):
+    mine = dump_model(load_vehicle(overrides={"name": "mine"}))
+    (tmp_path / "mine.yaml").write_text(mine)
+    if text == "inline":
+        text = "vehicle:\n" + "".join(f"  {line}\n" for line in mine.splitlines())
+    path = tmp_path / "s.yaml"
+    path.write_text(text)
+    scenario = load_scenario(path, {"vehicle.settling.wheel": "cylinder"})
+    assert scenario.vehicle.settling.wheel == "cylinder"
+    assert scenario.vehicle.name == (
+        "mine" if "perseverance" not in text and text else "perseverance"
+    )
+    plain = load_scenario(path, {})
+    assert scenario.vehicle.geometry == plain.vehicle.geometry
+    assert plain.vehicle.settling.wheel == "disc"
+
+
+def test_a_bad_part_of_a_vehicle_is_one_line(tmp_path):
+    (problem,) = problems(tmp_path, "", {"vehicle.settling.wheel": "ball"})
+    assert problem == (
+        "--set vehicle.settling.wheel: expected one of point, disc, cylinder, got 'ball'"
+        " (known: point, disc, cylinder)"
+    )
+    (problem,) = problems(tmp_path, "", {"vehicle.settling.weel": "disc"})
+    assert problem == "--set vehicle.settling.weel: unknown key, did you mean 'wheel'?"
+
+
 def test_the_vehicle_tells_navlib_its_geometry_and_limits():
     given = vehicle_params(load_vehicle())
     defaults = param_values({})
@@ -156,3 +185,52 @@ def test_a_goal_off_the_terrain_is_told_with_its_place(tmp_path):
     with pytest.raises(ConfigError, match="--set goal: 300, 0"):
         check_places(scenario, terrain, None, {"goal": [300, 0]})
     check_places(load_scenario(path, {"goal": [10, 0]}), terrain, path, {})
+
+
+def test_arcs_alone_are_a_drive_that_leads_to_their_end():
+    arcs = [{"length_m": 2.0}, {"length_m": 0, "heading_change_deg": 90}, {"length_m": 3.0}]
+    scenario = load_scenario(None, {"arcs": arcs, "start": [0.0, 0.0, 0.0]})
+    assert scenario.waypoints == ()
+    (end,) = drive_info(scenario).waypoints
+    assert (end.north_m, end.east_m) == pytest.approx((2.0, 3.0))
+    first, turn, _ = directed_arcs(scenario)
+    assert (first.arc.length_m, first.mode) == (2.0, "guarded")
+    assert turn.arc.heading_change_rad == pytest.approx(math.pi / 2)
+
+
+def test_a_goal_comes_after_arcs():
+    scenario = load_scenario(None, {"arcs": [{"length_m": 2.0}], "goal": [5.0, 0.0]})
+    assert [item.goal_site_m for item in scenario.waypoints] == [(5.0, 0.0)]
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"arcs": [{"length_m": 11.0}]}, "arcs.0.length_m"),
+        ({"arcs": [{"length_m": 0}]}, "an arc needs a length or a heading change"),
+        ({"arcs": [{"length_m": 1.0, "mode": "avoid_all"}]}, "arcs.0.mode"),
+        ({"waypoints": []}, "at least one waypoint or arc"),
+        ({"executive.compute": "fast"}, "expected flight_like, zero or its own keys, got 'fast'"),
+        ({"executive.thinking": "never"}, "executive.thinking"),
+        ({"prior_map_radius_m": 100.0}, "prior_map_radius_m"),
+    ],
+)
+def test_bad_directions_are_one_clear_error(settings, message):
+    with pytest.raises(ConfigError) as caught:
+        load_scenario(None, settings)
+    assert message in str(caught.value)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_compute_times_have_sets_by_name():
+    zero = load_scenario(None, {"executive.compute": "zero"}).executive.compute
+    assert set(zero.model_dump().values()) == {0.0}
+    flight = load_scenario(None, {"executive.compute": "flight_like"}).executive.compute
+    assert flight == load_scenario(None, {}).executive.compute
+    assert flight.vo_s > 0.0
+
+
+def test_a_resolved_scenario_of_arcs_is_read_back(tmp_path):
+    scenario = load_scenario(None, {"arcs": [{"length_m": 2.0}], "executive.compute": "zero"})
+    (tmp_path / "s.yaml").write_text(dump_model(scenario))
+    assert load_scenario(tmp_path / "s.yaml", {}) == scenario

@@ -15,7 +15,7 @@ def test_every_row_appears_in_every_format(rows):
 
 def test_there_are_as_many_rows_as_in_c():
     assert len(tables.param_rows()) == lib.NAV_PARAM_COUNT
-    assert len(tables.evr_rows()) == lib.NAV_EVR_COUNT
+    assert len(tables.evr_rows()) == lib.NAV_EVR_COUNT + lib.NAV_HOST_EVR_COUNT
     assert len(tables.dp_rows()) == lib.NAV_DP_COUNT + lib.NAV_HOST_DP_COUNT
 
 

@@ -4,16 +4,17 @@ import math
 import numpy as np
 import pytest
 
-from pyharness.executive_config import ComputeTimes, PoseUncertainty
+from pyharness.executive_config import ComputeTimes
 from pyharness.messages import Arc, Pose6, Uncertainty
 from pyharness.params import param_values
 from pyharness.records import RecordStream, Waypoint
+from pyharness.status import Reason
 from pyharness.thinker import (
     Image,
     PlannerFaultError,
+    Selection,
     Thinker,
     describe_rejections,
-    planning_uncertainty,
 )
 
 POSE = Pose6(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -44,7 +45,8 @@ def test_no_path_is_an_answer(thinker, planner):
     planner.arcs = [None]
     selection, _ = thinker.select(0.0, POSE, CERTAIN, GOAL, Arc(0.0, 0.0))
     assert selection.arc is None
-    assert selection.rejections == "tilt 1694"
+    assert selection.rejections == {Reason.TILT: 1694}
+    assert selection.main_reason == Reason.TILT
 
 
 @pytest.mark.parametrize("name", ["process", "analyze", "select", "evaluate"])
@@ -80,17 +82,9 @@ def test_a_planner_that_raises_is_a_fault(thinker, planner, monkeypatch):
 
 
 def test_rejections_are_named_the_most_frequent_first():
-    assert describe_rejections([9, 1, 0, 5]) == "clearance 5, kioz 1"
-    assert describe_rejections([4, 0]) == "none"
-
-
-def test_uncertainty_grows_with_what_is_still_to_be_driven(fake_world):
-    estimate = fake_world().estimate
-    near = planning_uncertainty(PoseUncertainty(), estimate, 0.5, 0.0)
-    far = planning_uncertainty(PoseUncertainty(), estimate, 0.5, 0.5)
-    assert far.position_m > near.position_m
-    assert far.yaw_rad > near.yaw_rad
-    assert near.global_position_m == pytest.approx(0.3)
+    assert describe_rejections({Reason.KIOZ: 1, Reason.TILT: 5}) == "tilt 5, kioz 1"
+    assert describe_rejections({}) == "none"
+    assert Selection(None, {Reason.COST: 9, Reason.KIOZ: 1}, "guarded").main_reason == Reason.KIOZ
 
 
 def test_an_arc_passed_by_the_leave_limits_is_evaluated_by_them(thinker, planner, monkeypatch):

@@ -100,7 +100,9 @@ typedef struct
  * most tolerance_m; otherwise the best iterate is returned with its residual_m = largest |gap|.
  * With no ground under a wheel (off the map, NaN node or NaN pose) on_map is 0 and every derived
  * quantity is NaN.
- * guess: a nearby settled state to start from, or NULL to start from the ground under the hubs.
+ * guess: a settled state near by, on the same terrain, or NULL to start from the ground under the
+ * hubs. From a guess closer than a few centimetres the posture is foretold by the ground under its
+ * contacts, and iterations counts what that left to do.
  */
 void sim_settle(const sim_terrain_t *terrain,
                 const sim_vehicle_t *vehicle,

@@ -164,3 +164,23 @@ def test_between_tilts_the_table_is_linear_and_outside_it_constant() -> None:
             np.interp(tilt, table.tilt_deg, table.slip_sigma),
         )
         assert table.at(math.radians(tilt)) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(("roll_deg", "pitch_deg"), [(0, 0), (0, 15), (0, -10), (12, 0), (-8, 6)])
+def test_what_is_expected_is_the_mean_of_what_happens(roll_deg: float, pitch_deg: float) -> None:
+    slip = model(seed=4, mode="gaussian", yaw_sigma_deg_sqrt_m=0.5)
+    attitude = (math.radians(roll_deg), math.radians(pitch_deg), 0.3)
+    motion = (math.cos(0.3), math.sin(0.3))
+    steps = [slip.step(motion, 1.0, attitude) for _ in range(4000)]
+    added = np.array([(s.north_m - motion[0], s.east_m - motion[1]) for s in steps])
+    expected = slip.expect(motion, 1.0, attitude)
+    assert added.mean(axis=0) == pytest.approx((expected.north_m, expected.east_m), abs=0.005)
+    assert np.hypot(*added.std(axis=0)) == pytest.approx(expected.sigma_m, rel=0.05)
+    yaw_rad = np.array([s.yaw_slip_rad for s in steps])
+    assert yaw_rad.std() == pytest.approx(expected.yaw_sigma_rad, rel=0.05)
+
+
+def test_expecting_draws_nothing() -> None:
+    asked, other = model(mode="gaussian"), model(mode="gaussian")
+    asked.expect((1.0, 0.0), 1.0, LEVEL)
+    assert metre(asked) == metre(other)

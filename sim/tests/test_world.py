@@ -361,3 +361,36 @@ def test_a_long_drives_error_stays_within_what_is_reported(vehicle: Vehicle) -> 
     # sigma is that of the worst direction: the mean square of two axes is at most 2
     square = float(np.mean(np.sum(np.square(scaled), axis=1)))
     assert 0.5 < square < 2.5
+
+
+def test_slip_ahead_is_that_of_the_slope_under_the_rover(vehicle: Vehicle) -> None:
+    slope = terrain_of(lambda north, _east: math.tan(math.radians(15)) * north)
+    world = World(slope, vehicle, CAMERA, NO_NOISE, SlipConfig(mode="table"))
+    ahead = world.slip_ahead(2.0, 0.0)
+    assert ahead.north_m == pytest.approx(-0.2 * 2.0, rel=0.02)
+    assert ahead.sigma_m == 0.0
+    turning = world.slip_ahead(0.0, 1.0)
+    assert turning.north_m < -0.01
+    assert turning.yaw_sigma_rad > 0.0
+
+
+def test_a_rover_set_down_elsewhere_knows_where_it_is(vehicle: Vehicle) -> None:
+    flat = terrain_of(lambda north, _east: 0.0 * north, size_m=40.0)
+    world = World(flat, vehicle, CAMERA)
+    world.start_arc(2.0, 0.0)
+    finish(world)
+    time_s = world.time_s
+    truth = world.place(5.0, -3.0, 1.0)
+    assert (truth.x_m, truth.y_m, truth.yaw_rad, world.time_s) == (5.0, -3.0, 1.0, time_s)
+    assert (world.estimate.x_m, world.estimate.y_m) == (5.0, -3.0)
+    assert world.arc_done
+
+
+def test_the_ground_around_is_the_terrain_in_the_rover_frame(vehicle: Vehicle) -> None:
+    slope = terrain_of(lambda north, east: 0.1 * north + 0.05 * east)
+    world = World(slope, vehicle, CAMERA, NO_NOISE, start=(1.0, 2.0, 0.7))
+    points = world.ground_around(3.0)
+    assert len(points) == pytest.approx(math.pi * 9 / 0.01, rel=0.02)
+    # on the plane that the rover stands on
+    assert np.abs(points[:, 2]).max() < 1e-3
+    assert np.hypot(points[:, 0], points[:, 1]).max() < 3.02

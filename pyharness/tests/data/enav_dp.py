@@ -1,4 +1,4 @@
-# ksy sha256 24006c308281967056580cc79aecdcee9ea66b27148c0905a53e5f94397fd1e1
+# ksy sha256 8a4749caf4a7b775beb12159cca5973e90f57f509c715f973ec578259f6d790c
 # This is a generated file! Please edit source .ksy file and use kaitai-struct-compiler to rebuild
 # type: ignore
 
@@ -37,6 +37,7 @@ class EnavDp(KaitaiStruct):
         truth = 32
         estimate = 33
         timeline = 34
+        host_evr = 35
     def __init__(self, _io, _parent=None, _root=None):
         super(EnavDp, self).__init__(_io)
         self._parent = _parent
@@ -1591,6 +1592,11 @@ class EnavDp(KaitaiStruct):
                     self._raw_payload = self._io.read_bytes(self.payload_size)
                     _io__raw_payload = KaitaiStream(BytesIO(self._raw_payload))
                     self.payload = EnavDp.Body.NavEvrT(_io__raw_payload, self, self._root, self._is_le)
+                elif _on == EnavDp.DpKind.host_evr:
+                    pass
+                    self._raw_payload = self._io.read_bytes(self.payload_size)
+                    _io__raw_payload = KaitaiStream(BytesIO(self._raw_payload))
+                    self.payload = EnavDp.Body.NavEvrT(_io__raw_payload, self, self._root, self._is_le)
                 elif _on == EnavDp.DpKind.init_in:
                     pass
                     self._raw_payload = self._io.read_bytes(self.payload_size)
@@ -1707,6 +1713,11 @@ class EnavDp(KaitaiStruct):
                     self._raw_payload = self._io.read_bytes(self.payload_size)
                     _io__raw_payload = KaitaiStream(BytesIO(self._raw_payload))
                     self.payload = EnavDp.Body.NavEvrT(_io__raw_payload, self, self._root, self._is_le)
+                elif _on == EnavDp.DpKind.host_evr:
+                    pass
+                    self._raw_payload = self._io.read_bytes(self.payload_size)
+                    _io__raw_payload = KaitaiStream(BytesIO(self._raw_payload))
+                    self.payload = EnavDp.Body.NavEvrT(_io__raw_payload, self, self._root, self._is_le)
                 elif _on == EnavDp.DpKind.init_in:
                     pass
                     self._raw_payload = self._io.read_bytes(self.payload_size)
@@ -1798,6 +1809,9 @@ class EnavDp(KaitaiStruct):
                     pass
                     self.payload._fetch_instances()
                 elif _on == EnavDp.DpKind.evr:
+                    pass
+                    self.payload._fetch_instances()
+                elif _on == EnavDp.DpKind.host_evr:
                     pass
                     self.payload._fetch_instances()
                 elif _on == EnavDp.DpKind.init_in:
