@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pyharness.cli_compare import compare
 from pyharness.cli_modes import modes_command
 from pyharness.cli_records import evaluate_arc_command, replay_command
 from pyharness.cli_sim import stereo_noise
@@ -61,6 +62,7 @@ def _fail(message: str) -> int:
     return EXIT_BAD_INPUT
 
 
+cli.add_command(compare)
 cli.add_command(terrain)
 cli.add_command(modes_command)
 terrain.add_command(stereo_noise)
@@ -76,7 +78,7 @@ cli.add_command(evaluate_arc_command)
 @click.option("--start", type=Numbers("N,E,YAW_DEG"), help="Where the rover starts (-40,0,0).")
 @click.option("--goal", type=Numbers("N,E"), help="Where it goes (40,0).")
 @click.option("--mode", type=click.Choice(MODES), help="How it goes there (avoid_all).")
-@click.option("--planner", help="enav, file.py:Class, or an installed planner.")
+@click.option("--planner", help="enav, gestalt, rrtsharp, file.py:Class, or an installed one.")
 @click.option("--scenario", "scenario_file", type=click.Path(path_type=Path), help="YAML file.")
 @click.option("--set", "settings", type=Assignment(), multiple=True, help="Scenario key = value.")
 @click.option("--seed", type=int, help="Of terrain and noise.")

@@ -37,8 +37,9 @@ ALIGNMENT_BYTES = 8
 SCHEMA_SIZE_MAX_BYTES = 1 << 20
 END_SIZE_MAX_BYTES = 1 << 16
 SEARCH_BLOCK_BYTES = 1 << 20
+
 FLUSHED_KINDS = frozenset({Kind.SELECT_ARC_OUT, Kind.HOST_EVR})
-"""What ends a planning cycle, and what the executive reports."""
+"""What ends a planning cycle, and what tells of a fault."""
 
 _FILE_HEADER = "8s4I"  # magic, byte-order mark, format version, content version, schema size
 _RECORD_HEADER = "4Id"  # sync, kind, payload size, sequence, time
@@ -126,7 +127,7 @@ class DpWriter:
         self._file.write(head + text + check)
 
     def write(self, record: Record) -> None:
-        """Append one record."""
+        """Append one record; planning cycles and faults are handed on at once."""
         head = struct.pack(
             "=" + _RECORD_HEADER,
             SYNC,

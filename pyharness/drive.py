@@ -8,7 +8,7 @@ from pyharness.faults import SafetyWatch
 from pyharness.live import LiveDrive
 from pyharness.navlib import Zones
 from pyharness.planner import Planner
-from pyharness.records import KIND_END, Outcome, RecordStream, end_payload
+from pyharness.records import KIND_END, Outcome, RecordStream, Sink, end_payload
 from pyharness.scenario import (
     Scenario,
     directed_arcs,
@@ -19,6 +19,7 @@ from pyharness.scenario import (
 )
 from pyharness.session import RecordFeed, Session
 from pyharness.thinker import Thinker
+from sim.random_streams import rng_for
 from sim.terrain import Terrain
 from sim.vehicle import Vehicle
 from sim.world import World, true_limit_violation
@@ -52,7 +53,7 @@ def drive(
     zones = zones_request(scenario)
     executive = Executive(
         world,
-        Thinker(planner_class(navlib_params(scenario), stream.publish), scenario.executive.compute),
+        Thinker(make_planner(scenario, planner_class, stream.publish), scenario.executive.compute),
         directed_arcs(scenario),
         info.waypoints if scenario.waypoints else (),
         scenario.executive,
@@ -69,3 +70,9 @@ def drive(
     outcome = executive.finish()
     stream.publish(KIND_END, world.time_s, end_payload(outcome))
     return outcome
+
+
+def make_planner(scenario: Scenario, planner_class: type[Planner], sink: Sink) -> Planner:
+    """Start a planner with the parameters and the random stream of a resolved scenario."""
+    rng = rng_for(scenario.seed, "planner")
+    return planner_class(navlib_params(scenario), sink, scenario.planner_params, rng)

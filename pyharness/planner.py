@@ -16,17 +16,39 @@ recorded by the base class, so recording, metrics and pictures are the same for 
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping
+from typing import ClassVar
+
+import numpy as np
 
 from pyharness.dp import Kind, Message, init_request, new_message, used_bytes
+from pyharness.params import ParamDefinition
 from pyharness.records import Sink
 
 
 class Planner(ABC):
-    """Base class of planners."""
+    """Base class of planners.
 
-    def __init__(self, params: Mapping[str, float], sink: Sink, time_s: float = 0.0) -> None:
-        """Keep and record Navlib's parameters, which also describe the vehicle."""
+    Attributes:
+        OWN_PARAMS: What a scenario may set under `planner_params`.
+        params: Navlib's parameters, which also describe the vehicle.
+        own_params: Value of every one of OWN_PARAMS.
+        rng: Where chance comes from; a drive gives a generator made from its seed.
+    """
+
+    OWN_PARAMS: ClassVar[tuple[ParamDefinition, ...]] = ()
+
+    def __init__(
+        self,
+        params: Mapping[str, float],
+        sink: Sink,
+        own_params: Mapping[str, float] | None = None,
+        rng: np.random.Generator | None = None,
+        time_s: float = 0.0,
+    ) -> None:
+        """Keep all that, and record Navlib's; `own_params` left out have their defaults."""
         self.params = params
+        self.own_params = own_param_values(type(self), own_params or {})
+        self.rng = rng or np.random.default_rng(0)
         self._sink = sink
         request = init_request(params, time_s)
         self._recorded(Kind.INIT_IN, Kind.INIT_OUT, request, self._init)
@@ -100,3 +122,19 @@ class Planner(ABC):
     def _send(self, records: Iterable[tuple[int, float, bytes]]) -> None:
         for kind, time_s, payload in records:
             self._sink(kind, time_s, payload)
+
+
+def own_param_values(planner_class: type[Planner], given: Mapping[str, float]) -> dict[str, float]:
+    """Return all parameters of a planner: the defaults, replaced where given."""
+    return {row.name: given.get(row.name, row.default) for row in planner_class.OWN_PARAMS}
+
+
+def own_param_faults(planner_class: type[Planner], given: Mapping[str, float]) -> Mapping[str, str]:
+    """Return what is wrong with the values given, by name."""
+    table = {row.name: row for row in planner_class.OWN_PARAMS}
+    known = ", ".join(table) or "none"
+    faults = {
+        name: table[name].fault(value) if name in table else f"unknown parameter (known: {known})"
+        for name, value in given.items()
+    }
+    return {name: fault for name, fault in faults.items() if fault is not None}

@@ -3,7 +3,7 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
@@ -24,6 +24,8 @@ from pyharness.executive_config import ExecutiveConfig
 from pyharness.messages import Arc, DirectedArc, Pose6, pose_after
 from pyharness.navlib import zone_fault
 from pyharness.params import ParamDefinition, param_table, param_values, params_fault
+from pyharness.planner import own_param_faults, own_param_values
+from pyharness.planners import load_planner
 from pyharness.records import DriveInfo, Waypoint
 from pyharness.status import ZoneKind, ZoneShape
 from sim.camera import CameraConfig
@@ -200,6 +202,7 @@ class Scenario(ConfigModel):
     prior_map_radius_m: Annotated[float, Field(ge=0, le=15)] = 0.0  # known at the start
     zones: Annotated[tuple[ZoneSection, ...], Field(max_length=32)] = ()
     planner: str = "enav"
+    planner_params: dict[str, float] = Field(default_factory=dict)  # of a planner other than enav
     navlib: NavlibSection = NavlibSection()
     vehicle: VehicleSection = "perseverance"
     camera: CameraConfig = CameraConfig()
@@ -239,13 +242,14 @@ def load_scenario(path: Path | None, overrides: Mapping[str, object]) -> Scenari
             spelled_out = _named_vehicle(vehicle, folder, overrides).model_dump(mode="json")
             overrides = {**overrides, "vehicle": spelled_out}
         overrides = {**overrides, **parts}
-    return _resolve(_read(path, overrides), folder, overrides)
+    scenario = _resolve(_read(path, overrides), folder, overrides)
+    return _with_planner_params(scenario, path, overrides)
 
 
 def _read(path: Path | None, overrides: Mapping[str, object]) -> Scenario:
     if path is None:
         return parse_model("", "scenario", Scenario, overrides)
-    return load_model(path, Scenario, overrides)
+    return load_model(path, Scenario, _for_another_planner(path, overrides))
 
 
 def _named_vehicle(name: str, folder: Path, overrides: Mapping[str, object]) -> Vehicle:
@@ -267,7 +271,7 @@ def check_places(
     for index, waypoint in enumerate(scenario.waypoints or ()):
         places[f"waypoints.{index}.goal_site_m"] = waypoint.goal_site_m
     problems = [
-        f"{_place_of(path, overrides, key)}: {_off_terrain(terrain, *place)}"
+        f"{_place_of(path, overrides, _names_of(key))}: {_off_terrain(terrain, *place)}"
         for key, place in places.items()
         if not is_on_terrain(terrain, *place)
     ]
@@ -291,9 +295,13 @@ def _off_terrain(terrain: Terrain, north_m: float, east_m: float) -> str:
     )
 
 
-def _place_of(path: Path | None, overrides: Mapping[str, object], key: str) -> str:
-    """Say where the value of a key was given."""
-    names = [key] if key == "start" else ["goal", key, "waypoints"]
+def _names_of(key: str) -> list[str]:
+    """Return the keys that may have given a place."""
+    return [key] if key == "start" else ["goal", key, "waypoints"]
+
+
+def _place_of(path: Path | None, overrides: Mapping[str, object], names: Sequence[str]) -> str:
+    """Say where the value was given, by the first of the keys that was."""
     for name in names:
         if any(given == name or given.startswith(f"{name}.") for given in overrides):
             return f"--set {name}"
@@ -356,6 +364,32 @@ def _resolve_planner(name: str, overrides: Mapping[str, object], folder: Path) -
     file_name, _, class_name = name.rpartition(":")
     start = Path() if "planner" in overrides else folder
     return f"{(start / file_name).absolute()}:{class_name}"
+
+
+def _for_another_planner(path: Path, overrides: Mapping[str, object]) -> Mapping[str, object]:
+    """Let another planner than that of the file start from its own defaults."""
+    is_given = any(key.split(".")[0] == "planner_params" for key in overrides)
+    if "planner" not in overrides or is_given:
+        return overrides
+    is_same = load_model(path, Scenario).planner == overrides["planner"]
+    return overrides if is_same else {**overrides, "planner_params": {}}
+
+
+def _with_planner_params(
+    scenario: Scenario, path: Path | None, overrides: Mapping[str, object]
+) -> Scenario:
+    """Check the parameters of the planner and fill in those that were left out."""
+    planner_class = load_planner(scenario.planner)
+    faults = own_param_faults(planner_class, scenario.planner_params)
+    problems = []
+    for name, fault in faults.items():
+        key = f"planner_params.{name}"
+        place = _place_of(path, overrides, [key, "planner_params"])
+        problems.append(f"{place}: {fault}" if place.endswith(key) else f"{place}: {key}: {fault}")
+    if problems:
+        raise ConfigError(problems)
+    values = own_param_values(planner_class, scenario.planner_params)
+    return scenario.model_copy(update={"planner_params": values})
 
 
 def vehicle_params(vehicle: Vehicle) -> dict[str, float]:
@@ -427,6 +461,7 @@ def drive_info(scenario: Scenario) -> DriveInfo:
         start_east_m=east_m,
         start_yaw_rad=math.radians(yaw_deg),
         waypoints=waypoints,
+        planner_params=scenario.planner_params,
     )
 
 

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tables of the C headers as text, YAML or Markdown."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from pyharness.dp import native_schema
 from pyharness.evr import evr_table
-from pyharness.params import param_table
+from pyharness.params import ParamDefinition, param_table
 
 Row = Mapping[str, object]
 
 
-def param_rows() -> list[Row]:
-    """Return one row per parameter of Navlib."""
+def param_rows(definitions: Iterable[ParamDefinition] | None = None) -> list[Row]:
+    """Return one row per parameter, of Navlib where nothing else is given."""
     return [
         {
             "name": row.name,
@@ -21,7 +21,7 @@ def param_rows() -> list[Row]:
             "unit": row.unit,
             "meaning": row.doc,
         }
-        for row in param_table().values()
+        for row in (param_table().values() if definitions is None else definitions)
     ]
 
 

@@ -103,11 +103,7 @@ class Thinker:
         answer = self._ask(self.planner.select_arc, "select_arc", request, accepted)
         duration_s = self.times.select_base_s
         duration_s += self.times.select_per_evaluation_s * int(answer["ace_evaluations"])
-        rejections = {
-            reason: int(answer["rejections"][reason])
-            for reason in Reason
-            if reason != Reason.NONE and answer["rejections"][reason]
-        }
+        rejections = rejections_of(answer)
         if answer["status"] == Status.NO_PATH:
             return Selection(None, rejections, goal.mode), duration_s
         arc = Arc(float(answer["arc"]["length_m"]), float(answer["arc"]["heading_change_rad"]))
@@ -155,6 +151,15 @@ class Thinker:
         if status not in accepted:
             raise PlannerFaultError(f"{name} refused: {status_text(status)}")
         return answer
+
+
+def rejections_of(answer: Message) -> dict[Reason, int]:
+    """Return how many candidates an answer of select_arc rejected, by the reasons that occurred."""
+    return {
+        reason: int(answer["rejections"][reason])
+        for reason in Reason
+        if reason != Reason.NONE and answer["rejections"][reason]
+    }
 
 
 def describe_rejections(rejections: Mapping[Reason, int]) -> str:

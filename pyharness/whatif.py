@@ -11,7 +11,7 @@ from pyharness.metrics import rejection_counts
 from pyharness.scenario import Scenario
 from pyharness.status import Reason, Status
 from pyharness.tables import Row, to_text
-from pyharness.thinker import describe_rejections
+from pyharness.thinker import describe_rejections, rejections_of
 from sim.config import parse_model
 
 
@@ -79,7 +79,7 @@ def _changed_cycles(recorded: History, rerun: History) -> list[Row]:
                     "recorded": arc_text(old),
                     "re-run": arc_text(new),
                     "ACE evaluations": f"{old['ace_evaluations']} -> {new['ace_evaluations']}",
-                    "rejected (re-run)": _rejections(new),
+                    "rejected (re-run)": describe_rejections(rejections_of(new)),
                 }
             )
     return rows
@@ -104,13 +104,6 @@ def arc_text(answer: Message) -> str:
     arc = answer["arc"]
     turn_deg = math.degrees(float(arc["heading_change_rad"]))
     return f"{float(arc['length_m']):.2f} m, {turn_deg:+.1f} deg"
-
-
-def _rejections(answer: Message) -> str:
-    counts = answer["rejections"].tolist()
-    return describe_rejections(
-        {Reason(value): count for value, count in enumerate(counts) if value and count}
-    )
 
 
 def _verdict(answer: Message) -> str:

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Write what is made from the C tables, pages of docs/ and enav_dp.ksy: `make docs`."""
+"""Write what is made from tables of C and Python, pages of docs/ and enav_dp.ksy: `make docs`."""
 
 from collections.abc import Mapping
 from pathlib import Path
 
 from pyharness import tables
 from pyharness._build import make_ksy
+from pyharness.planners.gestalt import Gestalt
+from pyharness.planners.rrtsharp import RrtSharp
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 NOTE = "<!-- made by `make docs` from the tables of navlib_c/include: do not edit -->\n\n"
@@ -19,6 +21,14 @@ def pages() -> Mapping[str, str]:
         + "Sources: [U] geometry of NASA's M2020 URDF; [S] SIM, IEEE Aerospace 2020; [E] published"
         " ENav numbers;\n[C] chosen here, with the reason. None of [C] is flight data. Set them"
         " with `--set navlib.NAME=VALUE`.\n\n" + tables.to_markdown(tables.param_rows()),
+        "planner_parameters.md": "# Parameters of GESTALT and RRT#\n\n"
+        + "<!-- made by `make docs` from pyharness/planners: do not edit -->\n\n"
+        + "[P] that there is such a quantity is published; [O] OMPL's default; [A] assumption, with"
+        " the reason. None of the\nvalues is flight data. Set them with `--set"
+        " planner_params.NAME=VALUE`; [planners](planners.md) says what they do.\n\n## GESTALT\n\n"
+        + tables.to_markdown(tables.param_rows(Gestalt.OWN_PARAMS))
+        + "\n## RRT#\n\n"
+        + tables.to_markdown(tables.param_rows(RrtSharp.OWN_PARAMS)),
         "events.md": "# Event reports\n\n"
         + NOTE
         + "A `{}` in a text stands for an argument; the last column gives their meaning in order."

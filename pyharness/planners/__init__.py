@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The planners that come with the simulator, and how others are found."""
 
+import importlib
 import importlib.util
 from importlib import metadata
 from pathlib import Path
@@ -9,10 +10,15 @@ from pyharness.errors import PlannerLoadError
 from pyharness.planner import Planner
 
 ENTRY_POINT_GROUP = "enav_sim.planners"
+OWN_PLANNERS = {
+    "enav": "pyharness.planners.enav:Enav",
+    "gestalt": "pyharness.planners.gestalt:Gestalt",
+    "rrtsharp": "pyharness.planners.rrtsharp:RrtSharp",
+}
 
 
 def load_planner(name: str) -> type[Planner]:
-    """Find a planner's class by `enav`, another entry point, or `file.py:Class`.
+    """Find a planner's class by its own name, another entry point, or `file.py:Class`.
 
     Raises:
         PlannerLoadError: There is none, or it is not a planner.
@@ -26,13 +32,12 @@ def load_planner(name: str) -> type[Planner]:
 
 
 def _from_entry_points(name: str) -> object:
-    if name == "enav":
-        from pyharness.planners.enav import Enav
-
-        return Enav
+    if name in OWN_PLANNERS:
+        module, class_name = OWN_PLANNERS[name].split(":")
+        return getattr(importlib.import_module(module), class_name)
     points = metadata.entry_points(group=ENTRY_POINT_GROUP)
     if name not in points.names:
-        known = ", ".join(sorted({"enav", *points.names}))
+        known = ", ".join(sorted({*OWN_PLANNERS, *points.names}))
         raise PlannerLoadError(f"planner {name}: expected file.py:Class or one of {known}")
     try:
         return points[name].load()

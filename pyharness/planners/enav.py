@@ -3,6 +3,8 @@
 
 from collections.abc import Callable, Mapping
 
+import numpy as np
+
 from pyharness.dp import Message
 from pyharness.navlib import Navlib
 from pyharness.planner import Planner
@@ -12,10 +14,17 @@ from pyharness.records import Sink
 class Enav(Planner):
     """Hands every call to Navlib and passes on what Navlib sends."""
 
-    def __init__(self, params: Mapping[str, float], sink: Sink, time_s: float = 0.0) -> None:
+    def __init__(
+        self,
+        params: Mapping[str, float],
+        sink: Sink,
+        own_params: Mapping[str, float] | None = None,
+        rng: np.random.Generator | None = None,
+        time_s: float = 0.0,
+    ) -> None:
         """Start Navlib with the parameters."""
         self._navlib = Navlib(params, time_s)
-        super().__init__(params, sink, time_s)  # sends what nav_init has sent
+        super().__init__(params, sink, own_params, rng, time_s)  # sends what nav_init has sent
 
     def _set_kioz(self, request: Message) -> Message:
         return self._navlib.set_kioz(request)

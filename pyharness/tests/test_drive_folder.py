@@ -170,3 +170,15 @@ def test_a_planner_from_a_file_drives(tmp_path):
     path.write_text("from pyharness.planners.enav import Enav\nclass Mine(Enav): pass\n")
     limit = {"planner": f"{path}:Mine", "executive.time_limit_s": 200.0}
     assert run(tmp_path / "mine", limit)["planner"] == "mine.py:Mine"
+
+
+@pytest.mark.parametrize("planner", ["gestalt", "rrtsharp"])
+def test_drives_of_the_other_planners_leave_the_same_folder_and_can_be_repeated(tmp_path, planner):
+    summary = run(tmp_path / "first", {"planner": planner})
+    assert summary["outcome"] == "goal_reached"
+    assert summary["planner"] == planner
+    assert {path.name for path in (tmp_path / "first").iterdir()} == FILES
+    run(tmp_path / "second", path=tmp_path / "first/scenario.yaml")
+    for name in FILES - {"summary.json"}:
+        first, second = (tmp_path / folder / name for folder in ("first", "second"))
+        assert first.read_bytes() == second.read_bytes(), name

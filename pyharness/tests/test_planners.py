@@ -4,7 +4,7 @@ import pytest
 from pyharness.dp import Kind
 from pyharness.errors import PlannerLoadError
 from pyharness.params import param_values
-from pyharness.planners import load_planner
+from pyharness.planners import OWN_PLANNERS, load_planner
 from pyharness.planners.enav import Enav
 from pyharness.records import RecordStream
 
@@ -15,8 +15,10 @@ def test_enav_starts_with_its_parameters_on_record():
     assert {item.kind for item in records} == {Kind.INIT_IN, Kind.INIT_OUT, Kind.EVR}
 
 
-def test_enav_is_found_by_name():
+def test_the_simulators_own_planners_are_found_by_name():
     assert load_planner("enav") is Enav
+    names = [load_planner(name).__name__ for name in OWN_PLANNERS]
+    assert names == ["Enav", "Gestalt", "RrtSharp"]
 
 
 def test_a_class_of_a_file_is_found(tmp_path):

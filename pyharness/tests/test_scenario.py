@@ -234,3 +234,32 @@ def test_a_resolved_scenario_of_arcs_is_read_back(tmp_path):
     scenario = load_scenario(None, {"arcs": [{"length_m": 2.0}], "executive.compute": "zero"})
     (tmp_path / "s.yaml").write_text(dump_model(scenario))
     assert load_scenario(tmp_path / "s.yaml", {}) == scenario
+
+
+def test_parameters_of_a_planner_are_checked_with_their_place(tmp_path):
+    text = "planner: gestalt\nplanner_params:\n  near_weight: 0.5\n  far_weight: 1\n"
+    wrong, unknown = problems(tmp_path, text)
+    assert wrong == "3:3: planner_params.near_weight: expected 1 to 20, got 0.5"
+    assert unknown.startswith("4:3: planner_params.far_weight: unknown parameter (known: cell_")
+    (line,) = problems(tmp_path, "planner: gestalt", {"planner_params.arc_count": 1.0})
+    assert line == "--set planner_params.arc_count: expected 3 to 101, got 1"
+    (line,) = problems(tmp_path, "planner_params: {arc_count: 5}")
+    assert line == "1:18: planner_params.arc_count: unknown parameter (known: none)"
+
+
+def test_a_resolved_scenario_holds_all_parameters_of_its_planner(tmp_path):
+    scenario = load_scenario(None, {"planner": "rrtsharp", "planner_params.vertices": 77})
+    assert scenario.planner_params["vertices"] == 77.0
+    assert scenario.planner_params["goal_bias"] == 0.05
+    path = tmp_path / "scenario.yaml"
+    path.write_text(dump_model(scenario))
+    assert load_scenario(path, {}) == scenario
+
+
+def test_another_planner_than_that_of_the_file_has_its_own_defaults(tmp_path):
+    path = tmp_path / "scenario.yaml"
+    path.write_text("planner: rrtsharp\nplanner_params: {vertices: 77}\n")
+    assert load_scenario(path, {"planner": "enav"}).planner_params == {}
+    assert load_scenario(path, {"planner": "rrtsharp"}).planner_params["vertices"] == 77.0
+    given = {"planner": "gestalt", "planner_params.arc_count": 7}
+    assert "unknown parameter" in str(problems(tmp_path, path.read_text(), given))
