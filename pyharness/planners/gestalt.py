@@ -177,8 +177,8 @@ class Gestalt(MappedPlanner):
         spacing_m = max(SPACING_M, abs(length_m) / POSES_MAX)
         points = arc_points(Place.of(request["pose"]), length_m, heading_rad, spacing_m)
         goodness, worst = self._map.at(points)
-        if length_m == 0.0:
-            goodness[:] = 1.0
+        if length_m == 0.0 and heading_rad != 0.0:
+            goodness[:] = 1.0  # turns in place stay on the ground the rover stands on
         reasons = self._reasons(points, goodness, worst, mode, _zone_margin_m(request))[0]
         share = np.arange(1, len(reasons) + 1) / len(reasons)
         return verdict(reasons, share * (abs(length_m) or abs(heading_rad)))

@@ -138,8 +138,8 @@ class FakeWorld:
 class FakePlanner(Planner):
     """Answers from lists; when one is used up its last answer stays."""
 
-    def __init__(self, params, sink):
-        super().__init__(params, sink)
+    def __init__(self, params, sink, own_params=None, rng=None, time_s=0.0):
+        super().__init__(params, sink, own_params, rng, time_s)
         self.calls = []
         self.arcs = [(1.0, 0.0)]  # None: no path
         self.is_safe = [True]

@@ -30,7 +30,7 @@ class Live:
         self.records = []
         self.server = CommandServer(0)
         self.scenario = load_scenario(None, SHORT)
-        self.thread = threading.Thread(target=self._run)
+        self.thread = threading.Thread(target=self._run, daemon=True)
         self.thread.start()
         self.client = SocketClient(self.server.port)
 

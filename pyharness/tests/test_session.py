@@ -57,7 +57,7 @@ def server(drive):
         Session(drive, server).run()
         server.close()
 
-    thread = threading.Thread(target=run)
+    thread = threading.Thread(target=run, daemon=True)
     thread.start()
     yield server
     # without clients it runs to the end

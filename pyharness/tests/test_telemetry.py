@@ -3,7 +3,7 @@ import pytest
 
 from pyharness.dp import Kind, native_schema
 from pyharness.evr import evr_line
-from pyharness.status import HostEvr
+from pyharness.status import HostEvr, Severity
 from pyharness.telemetry import Telemetry
 
 
@@ -13,6 +13,7 @@ def test_an_event_is_a_record_with_the_text_of_its_table(fake_world):
     telemetry.event(HostEvr.FAULT_NO_PATH, 4, 3, 1694)
     ((kind, time_s, payload),) = records
     assert (kind, time_s) == (Kind.HOST_EVR, 0.0)
+    assert native_schema().decode(kind, payload)["severity"] == Severity.WARNING_HIGH
     line = evr_line(native_schema().decode(kind, payload))
     assert line.split(maxsplit=3) == [
         "0.000",

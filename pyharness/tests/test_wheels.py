@@ -48,6 +48,7 @@ def test_they_steer_standing_before_another_curvature(wheels, world, records):
     pass_time(world, 5.0)
     assert wheels.remaining == Arc(0.75, 0.375)
     assert wheels.end() == Arc(0.25, 0.125)
+    assert world.arc is None
     assert wheels.remaining.is_empty
     assert records == [(Activity.STEERING, 10.0), (Activity.DRIVING, 15.0)]
 
