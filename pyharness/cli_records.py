@@ -125,12 +125,12 @@ def _rerun(file: Path, out: Path | None) -> int:
 
     from pyharness.dp_file import DpReader
     from pyharness.planners import load_planner
-    from pyharness.rerun import compare, unbroken
+    from pyharness.rerun import compare, planner_of, unbroken
 
     if out is not None:
         raise HarnessError("-o: a re-run that changes nothing has nothing to write")
     with DpReader(file) as reader:
-        planner_class = load_planner(reader.info.planner)
+        planner_class = planner_of(load_planner(reader.info.planner), reader.info)
         with closing(unbroken(_with_progress(reader))) as records:
             comparison = compare(records, reader.schema, planner_class)
         done = f"{comparison.call_count} calls, {comparison.record_count} records"
@@ -154,14 +154,16 @@ def _what_if(
     from pyharness.planners import load_planner
     from pyharness.records import RecordStream
     from pyharness.replay import taken
-    from pyharness.rerun import rerun_into, unbroken
+    from pyharness.rerun import planner_of, rerun_into, unbroken
     from pyharness.whatif import changed_params, comparison_text
 
     changes = changed_params(settings)
     with DpReader(file) as reader:
         name = planner or reader.info.planner
-        planner_class = load_planner(name)
         info = replace(reader.info, planner=Path(name).name)
+        if info.planner != reader.info.planner:
+            info = replace(info, planner_params={})
+        planner_class = planner_of(load_planner(name), info)
         recorded, again = History(reader.schema, reader.info), History(native_schema(), info)
         records = taken(recorded, unbroken(_with_progress(reader)), file)
         with nullcontext() if out is None else DpWriter(_fresh(out / "drive.dp"), info) as writer:

@@ -221,7 +221,7 @@ def native_schema() -> Schema:
         enums={type_name: _enum_names(type_name, prefix) for type_name, prefix in _ENUMS.items()},
         events={
             int(row.id): EventDefinition(int(row.id), _text(row.name), _text(row.text))
-            for row in lib.nav_evr_defs
+            for row in (*lib.nav_evr_defs, *lib.nav_host_evr_defs)
         },
     )
 

@@ -175,6 +175,7 @@ _STANDARD: Mapping[int, Callable[[Message, float], Messages]] = {
     Kind.COSTMAP: _costmap,
     Kind.SELECT_ARC_OUT: _path,
     Kind.EVR: _evr,
+    Kind.HOST_EVR: _evr,
 }
 
 

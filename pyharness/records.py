@@ -2,7 +2,7 @@
 """The record stream: the only thing that recorder, metrics, pictures and GUI see of a drive."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 KIND_END = 0
@@ -69,6 +69,7 @@ class DriveInfo:
     start_east_m: float
     start_yaw_rad: float
     waypoints: tuple[Waypoint, ...]
+    planner_params: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

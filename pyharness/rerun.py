@@ -20,7 +20,8 @@ from pyharness.dp import (
 )
 from pyharness.errors import RerunError
 from pyharness.planner import Planner
-from pyharness.records import KIND_END, Record, RecordStream, Sink
+from pyharness.records import KIND_END, DriveInfo, Record, RecordStream, Sink
+from sim.random_streams import rng_for
 
 PlannerClass = Callable[..., Planner]
 
@@ -44,6 +45,16 @@ def unbroken(records: Iterable[Record]) -> Generator[Record]:
         if record.sequence != index:
             return
         yield record
+
+
+def planner_of(planner_class: type[Planner], info: DriveInfo) -> PlannerClass:
+    """Return what starts a planner as a drive did: with its own parameters and random stream."""
+
+    def make(params: Mapping[str, float], sink: Sink, **more: float) -> Planner:
+        rng = rng_for(info.seed, "planner")
+        return planner_class(params, sink, info.planner_params, rng, **more)
+
+    return make
 
 
 class Feeder:
@@ -103,9 +114,9 @@ class Feeder:
     def _make_planner(self, request: Message) -> Planner:
         names = native_schema().parameters
         recorded = dict(zip(names, request["params"].tolist(), strict=True))
-        return self._planner_class(
-            {**recorded, **self._changed_params}, self._sink, time_s=float(request["time_s"])
-        )
+        time_s = float(request["time_s"])
+        more = {} if time_s == 0.0 else {"time_s": time_s}
+        return self._planner_class({**recorded, **self._changed_params}, self._sink, **more)
 
 
 # ------------------------------------------------------------------ comparing

@@ -461,6 +461,7 @@ def drive_info(scenario: Scenario) -> DriveInfo:
         start_east_m=east_m,
         start_yaw_rad=math.radians(yaw_deg),
         waypoints=waypoints,
+        planner_params=scenario.planner_params,
     )
 
 

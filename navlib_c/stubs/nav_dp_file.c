@@ -146,19 +146,20 @@ static void put_enums(nav_dp_file_t *file)
     put_text(file, "}");
 }
 
-static void put_events(nav_dp_file_t *file)
+static void put_events(nav_dp_file_t *file,
+                       const nav_evr_def_t *rows,
+                       uint32_t count,
+                       bool is_first)
 {
-    put_text(file, "[");
-    for (uint32_t k = 0U; k < (uint32_t) NAV_EVR_COUNT; k++)
+    for (uint32_t k = 0U; k < count; k++)
     {
-        put_comma(file, k);
+        put_comma(file, is_first ? k : 1U);
         put_key(file, "id", true);
-        put_number(file, nav_evr_defs[k].id);
-        put_pair(file, "name", nav_evr_defs[k].name, false);
-        put_pair(file, "text", nav_evr_defs[k].text, false);
+        put_number(file, rows[k].id);
+        put_pair(file, "name", rows[k].name, false);
+        put_pair(file, "text", rows[k].text, false);
         put_text(file, "}");
     }
-    put_text(file, "]");
 }
 
 static void put_kinds(nav_dp_file_t *file, const nav_dp_def_t *rows, uint32_t count, bool is_first)
@@ -228,7 +229,10 @@ static void put_description(nav_dp_file_t *file, const char *drive_json)
     put_key(file, "enums", false);
     put_enums(file);
     put_key(file, "events", false);
-    put_events(file);
+    put_text(file, "[");
+    put_events(file, nav_evr_defs, (uint32_t) NAV_EVR_COUNT, true);
+    put_events(file, nav_host_evr_defs, (uint32_t) NAV_HOST_EVR_COUNT, false);
+    put_text(file, "]");
     put_key(file, "kinds", false);
     put_text(file, "[");
     put_kinds(file, nav_dp_defs, (uint32_t) NAV_DP_COUNT, true);

@@ -12,7 +12,7 @@ from pyharness.errors import RerunError
 from pyharness.planners import load_planner
 from pyharness.planners.enav import Enav
 from pyharness.records import Record, RecordStream
-from pyharness.rerun import compare, field_at, rerun_into, unbroken
+from pyharness.rerun import compare, field_at, planner_of, rerun_into, unbroken
 from pyharness.tests.byte_order import write_swapped
 
 
@@ -60,6 +60,11 @@ DRIVES = {
     "keep-in zone": ({"zones": [circle(-5.0, 9.0, "keep_in")]}, "goal_reached"),
     "budget": ({"terrain": ground(cfa=0.1), "navlib": {"ace_budget_poses": 20}}, "goal_reached"),
     "all products": ({"records": "full"}, "goal_reached"),
+    "gestalt": ({"planner": "gestalt"}, "goal_reached"),
+    "rrtsharp": (
+        {"planner": "rrtsharp", "seed": 3, "planner_params": {"vertices": 200.0}},
+        "goal_reached",
+    ),
     "no_path": ({"terrain": ground(cfa=0.3), "executive.replans_max": 0}, "no_path"),
     "zone in the way": ({"zones": [circle(-3.0, 1.0)], "mode": "unguarded"}, "no_path"),
     "kioz_violation": ({"zones": [circle(-10.0, 1.0)]}, "kioz_violation"),
@@ -85,7 +90,7 @@ def test_a_drive_run_again_is_identical(name, tmp_path, monkeypatch, record_quic
     assert record_quick_drive(path, overrides).outcome == outcome
     with DpReader(path) as reader:
         records = list(reader.records())
-        planner_class = load_planner(reader.info.planner)
+        planner_class = planner_of(load_planner(reader.info.planner), reader.info)
         comparison = compare(records, reader.schema, planner_class)
     assert comparison.difference is None
     of_planner = [record for record in records if 0 < record.kind < Kind.TRUTH]
