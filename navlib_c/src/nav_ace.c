@@ -33,7 +33,10 @@
 #define WHEEL_SWAY 0.8
 
 /* Largest distance in height between a wheel's hub and what stands in its box. */
-#define WHEEL_LEAN_M 0.6
+#define WHEEL_LEAN_M 0.8
+
+/* From a point of the surface to the cells it hangs on, on any heading: a diagonal. */
+#define CELLS_AROUND 1.42
 
 /* Heights of wheels are solved for to this; what is left over widens their intervals. */
 #define SETTLE_TOLERANCE_M 5.0e-5
@@ -58,17 +61,17 @@ typedef struct
     double forward_m[NAV_WHEELS]; /* places of the wheels in the middle state */
     double right_m[NAV_WHEELS];
     double height_m[NAV_WHEELS];
-    bool is_bounded; /* no wheel's places have grown to the limit */
+    bool is_bounded; /* it led to states, and no wheel's places have grown to the limit */
 } range_t;
 
-/* Half widths of the first range: m, and rad for roll, pitch, rocker, bogies. */
-static const double FIRST_HALF[NAV_LINKAGE_STATES] = {0.05, 0.04, 0.05, 0.04, 0.12, 0.12};
+/* Half widths that a range has at least: m, and rad for roll, pitch, rocker, bogies. Between walls a
+ * rover can stand in more than one way; a range holds all of those that are near. */
+static const double LEAST_HALF[NAV_LINKAGE_STATES] = {0.05, 0.04, 0.05, 0.04, 0.12, 0.12};
 
 /* A new range is wider than the solution it is made from, so that it can hold the next: little at
  * first, for tight bounds, then more, for bounds at all. */
 #define WIDENING_FIRST 0.95
 #define WIDENING_STEP 0.15
-static const double SLACK[NAV_LINKAGE_STATES] = {0.002, 0.002, 0.002, 0.002, 0.006, 0.006};
 
 /* The nearest cells say little where they are this far off the plane. */
 #define FIRST_HEIGHT_MAX_M 0.3
@@ -248,11 +251,15 @@ static bool wheel_hub(
     const view_t *view, range_t *range, const common_t *common, uint32_t wheel, nav_interval_t *hub)
 {
     const growth_t growth = growth_wheel(view, range, common, wheel);
-    const nav_footprint_t footprint = wheel_footprint(view, range, common, &growth, wheel);
+    nav_footprint_t footprint = wheel_footprint(view, range, common, &growth, wheel);
     const double right_up = view->ground.right_up;
+    const double around_m = CELLS_AROUND * view->ground.surface->cell_m;
     /* on a slope the heights around move the feet of what a wheel stands on */
     const double coarse_span_max_m =
         (2.0 * COARSE_SHIFT_M) / nav_max(fabs(right_up), COARSE_SHIFT_M);
+    /* the surface in the box hangs on the cells around it */
+    footprint.box.half_u_m += around_m;
+    footprint.box.half_v_m += around_m;
     const nav_span_t span = wheel_ground(view, &footprint, coarse_span_max_m);
     const bool is_known = is_any_known(&span);
     range->is_bounded =
@@ -292,6 +299,36 @@ static void drop_bounds(const view_t *view, const range_t *range, nav_ace_bounds
 
 /* ------------------------------------------------------------------ states */
 
+/** Half widths of the states from those of the wheels. */
+static void spread_states(double wheel_radius_m, nav_spanned_t *spanned)
+{
+    double gain[NAV_LINKAGE_STATES];
+    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
+    {
+        double half = CURVATURE[k] * spanned->curved_m2;
+        gain[k] = 0.0;
+        for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
+        {
+            const double per_wheel = fabs(spanned->linkage.inverse[k][wheel]);
+            half += per_wheel * spanned->wheel_half_m[wheel];
+            gain[k] += per_wheel;
+        }
+        spanned->half[k] = half;
+    }
+    /* a wheel that leans with the body stands lower over what it touches, by this at most */
+    const double roll_far =
+        fabs(spanned->linkage.state[NAV_LINKAGE_ROLL]) + spanned->half[NAV_LINKAGE_ROLL];
+    const double lean_m = 0.5 * wheel_radius_m * squared(roll_far);
+    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
+    {
+        spanned->half[k] += gain[k] * lean_m;
+    }
+    for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
+    {
+        spanned->wheel_half_m[wheel] += lean_m;
+    }
+}
+
 /** Solves the linkage for the middles and spans the intervals. @return false when unsolvable */
 static bool span_states(const view_t *view,
                         const range_t *range,
@@ -316,15 +353,7 @@ static bool span_states(const view_t *view,
         widest_m = nav_max(widest_m, spanned->wheel_half_m[wheel]);
     }
     spanned->curved_m2 = widest_m * (widest_m + (2.0 * spanned->linkage.moved_max_m));
-    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
-    {
-        double half = CURVATURE[k] * spanned->curved_m2;
-        for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
-        {
-            half += fabs(spanned->linkage.inverse[k][wheel]) * spanned->wheel_half_m[wheel];
-        }
-        spanned->half[k] = half;
-    }
+    spread_states(view->params->wheel_radius_m, spanned);
     return is_solved;
 }
 
@@ -347,7 +376,7 @@ static void range_first(const view_t *view, range_t *range)
     for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
     {
         range->middle[k] = 0.0;
-        range->half[k] = FIRST_HALF[k];
+        range->half[k] = LEAST_HALF[k];
     }
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
     {
@@ -362,14 +391,17 @@ static void range_first(const view_t *view, range_t *range)
     nav_vehicle_wheel_places(vehicle, range->middle, range->forward_m, range->right_m);
 }
 
-/** A range around what was found, wider by a factor and by a share of the slack. */
-static void range_around(
-    const view_t *view, const nav_spanned_t *spanned, double widening, double slack, range_t *range)
+/** A range around what was found, no narrower than it, nor than the least half widths. */
+static void range_around(const view_t *view,
+                         const nav_spanned_t *spanned,
+                         double widening,
+                         const double least_half[NAV_LINKAGE_STATES],
+                         range_t *range)
 {
     for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
     {
         range->middle[k] = spanned->linkage.state[k];
-        range->half[k] = (widening * spanned->half[k]) + (slack * SLACK[k]);
+        range->half[k] = nav_max(widening * spanned->half[k], least_half[k]);
     }
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
     {
@@ -573,7 +605,9 @@ static bool span_range(const view_t *view, range_t *range, nav_spanned_t *spanne
     {
         is_known = wheel_hub(view, range, &common, wheel, &hubs[wheel]);
     }
-    return is_known && span_states(view, range, hubs, spanned);
+    const bool is_spanned = is_known && span_states(view, range, hubs, spanned);
+    range->is_bounded = range->is_bounded && is_spanned;
+    return is_spanned;
 }
 
 /** All bounds of the states that a range has led to. */
@@ -600,8 +634,10 @@ static void tighten(const view_t *view,
                     nav_spanned_t *spanned,
                     nav_ace_bounds_t *bounds)
 {
-    range_around(view, spanned, 1.0, 0.0, range);
-    if (span_range(view, range, spanned) && is_consistent(spanned, range))
+    static const double NONE[NAV_LINKAGE_STATES] = {0.0};
+    range_around(view, spanned, 1.0, NONE, range);
+    (void) span_range(view, range, spanned);
+    if (is_consistent(spanned, range))
     {
         bound_states(view, range, true, spanned, bounds);
     }
@@ -617,14 +653,15 @@ static bool find_range(const view_t *view,
     *is_certified = false;
     range_first(view, range);
     range->is_bounded = true;
-    for (uint32_t k = 0U; (k < ATTEMPTS) && is_standing && range->is_bounded && !*is_certified; k++)
+    for (uint32_t k = 0U; (k < ATTEMPTS) && range->is_bounded && !*is_certified; k++)
     {
         if (k > 0U)
         {
-            range_around(view, spanned, WIDENING_FIRST + (WIDENING_STEP * (double) k), 1.0, range);
+            range_around(view, spanned, WIDENING_FIRST + (WIDENING_STEP * (double) k), LEAST_HALF,
+                         range);
         }
         is_standing = span_range(view, range, spanned);
-        *is_certified = is_standing && is_consistent(spanned, range);
+        *is_certified = is_consistent(spanned, range);
     }
     return is_standing;
 }

@@ -18,7 +18,7 @@
 #define UNDER_MAX 32U
 
 /* Ground whose foot is this far times slope or lean outside the box can still stand in it. */
-#define SCAN_M 0.6
+#define SCAN_M 0.8
 
 /** Affine in a point of the ground: north and east of the pose, and above the plane. */
 typedef struct
@@ -221,7 +221,7 @@ static uint32_t lower_by_cells(
 }
 
 /** Can a costmap cell, with its middle at a place, hold ground under the belly? */
-static bool is_near(const belly_t *belly, const nav_box_t *feet, const nav_patch_t *patch)
+static bool is_near(const belly_t *belly, const nav_box_t *feet, const nav_tile_t *patch)
 {
     const double half_m = MIDDLE * belly->ground->surface->cell_m;
     const double u_m = affine_at(&belly->u_m, patch->north_m, patch->east_m, 0.0);
@@ -233,7 +233,7 @@ static bool is_near(const belly_t *belly, const nav_box_t *feet, const nav_patch
 }
 
 /** Largest spread of what stands in a costmap cell. */
-static double patch_spread_m(const belly_t *belly, const nav_patch_t *patch)
+static double patch_spread_m(const belly_t *belly, const nav_tile_t *patch)
 {
     const double half_m = MIDDLE * belly->ground->surface->cell_m;
     const double u_m = affine_at(&belly->u_m, patch->north_m, patch->east_m, 0.0);
@@ -244,7 +244,7 @@ static double patch_spread_m(const belly_t *belly, const nav_patch_t *patch)
 }
 
 /** Clearance that nothing in a costmap cell can fall below. */
-static double patch_free_m(const belly_t *belly, const nav_patch_t *patch, double spread_m)
+static double patch_free_m(const belly_t *belly, const nav_tile_t *patch, double spread_m)
 {
     const affine_t *free_m = &belly->free_m;
     const double half_m = MIDDLE * belly->ground->surface->cell_m;
@@ -273,7 +273,7 @@ typedef struct
     under_t cells[UNDER_MAX];
 } search_t;
 
-static under_t under_of(const belly_t *belly, const nav_patch_t *patch, int32_t row, int32_t col)
+static under_t under_of(const belly_t *belly, const nav_tile_t *patch, int32_t row, int32_t col)
 {
     under_t under = {row, col, NAV_ETA_NONE, -NAV_ETA_NONE};
     if (patch->is_whole)
@@ -320,7 +320,7 @@ static void find_touched(const belly_t *belly,
     {
         for (int32_t col = cells->cols.first; col <= cells->cols.last; col++)
         {
-            const nav_patch_t patch = nav_ground_patch(belly->ground, row, col);
+            const nav_tile_t patch = nav_ground_tile(belly->ground, row, col);
             if (is_near(belly, feet, &patch))
             {
                 const under_t cell = under_of(belly, &patch, row, col);

@@ -7,6 +7,7 @@
 
 #include <math.h>
 
+#include "nav_guard.h"
 #include "nav_math.h"
 #include "nav_minmax.h"
 
@@ -149,10 +150,10 @@ static bool cost_indices(double middle, double half, int32_t cost_first, nav_ind
     {
         const int32_t first = (cost_first + (int32_t) (low + (1.0 - EDGE_CELLS))) / SIDE;
         const int32_t last = (cost_first + (int32_t) (high + EDGE_CELLS)) / SIDE;
-        /* wholly on the surface, and on the costmap */
-        is_inside = (cost_first >= 0) && ((first * SIDE) >= cost_first) &&
+        /* wholly on the surface; the surface lies wholly on the costmap */
+        is_inside = ((first * SIDE) >= cost_first) &&
                     ((((last + 1) * SIDE) - cost_first) <= NAV_HEIGHTMAP_SIZE) &&
-                    (last < NAV_COSTMAP_SIZE);
+                    NAV_ALWAYS((cost_first >= 0) && (last < NAV_COSTMAP_SIZE));
         cells->first = first;
         cells->last = last;
     }
@@ -173,7 +174,7 @@ bool nav_ground_cost_box(const nav_ground_t *ground, const nav_box_t *box, nav_c
     return is_row_inside && is_col_inside;
 }
 
-nav_patch_t nav_ground_patch(const nav_ground_t *ground, int32_t cost_row, int32_t cost_col)
+nav_tile_t nav_ground_tile(const nav_ground_t *ground, int32_t cost_row, int32_t cost_col)
 {
     const int32_t index = (cost_row * NAV_COSTMAP_SIZE) + cost_col;
     const nav_cost_cell_t *cell = &ground->costmap->cells[index];
@@ -181,7 +182,7 @@ nav_patch_t nav_ground_patch(const nav_ground_t *ground, int32_t cost_row, int32
     const double cell_m = ground->surface->cell_m;
     const double row = (double) ((cost_row * SIDE) - ground->cost_row) + MIDDLE;
     const double col = (double) ((cost_col * SIDE) - ground->cost_col) + MIDDLE;
-    nav_patch_t patch;
+    nav_tile_t patch;
     patch.north_m = (row - ground->row) * cell_m;
     patch.east_m = (col - ground->col) * cell_m;
     /* from its own plane to the one under the pose: at the middle, and how they diverge from there */
@@ -207,7 +208,7 @@ bool nav_ground_range(const nav_ground_t *ground, const nav_box_t *box, nav_inte
     {
         for (int32_t col = cells.cols.first; (col <= cells.cols.last) && is_whole; col++)
         {
-            const nav_patch_t patch = nav_ground_patch(ground, row, col);
+            const nav_tile_t patch = nav_ground_tile(ground, row, col);
             above->low_m = nav_min(above->low_m, patch.above.low_m);
             above->high_m = nav_max(above->high_m, patch.above.high_m);
             is_whole = patch.is_whole;

@@ -105,7 +105,7 @@ typedef struct
     double east_m;
     nav_interval_t above; /* vertical */
     bool is_whole;        /* false: not all of it is known, and the heights hold for nothing */
-} nav_patch_t;
+} nav_tile_t;
 
 /** Places the frame on the plane fitted at the pose. @return false where there is none */
 bool nav_ground_place(nav_ground_t *ground,
@@ -127,7 +127,7 @@ nav_indices_t nav_ground_between(double low, double high);
 bool nav_ground_cost_box(const nav_ground_t *ground, const nav_box_t *box, nav_cost_box_t *cells);
 
 /** The ground of a costmap cell of nav_ground_cost_box. */
-nav_patch_t nav_ground_patch(const nav_ground_t *ground, int32_t cost_row, int32_t cost_col);
+nav_tile_t nav_ground_tile(const nav_ground_t *ground, int32_t cost_row, int32_t cost_col);
 
 /**
  * Between which heights over the plane all ground lies whose foot is in a box: from whole costmap

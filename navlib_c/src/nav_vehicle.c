@@ -270,8 +270,8 @@ static bool invert(double jacobian[NAV_WHEELS][NAV_LINKAGE_STATES],
         differences[1][k] = fronts[1][state] - pivots[1].turns[k];
         differences[2][k] = pivots[0].turns[k] - pivots[1].turns[k];
     }
-    const bool is_regular = invert_turns(differences, turns) && (fabs(pivots[0].per_bogie) > 0.0) &&
-                            (fabs(pivots[1].per_bogie) > 0.0);
+    const bool is_regular =
+        invert_turns(differences, turns) && (fabs(pivots[0].per_bogie * pivots[1].per_bogie) > 0.0);
     double front_height[SIDES] = {0.0, 0.0};
     double pivot_height[SIDES] = {1.0, 0.0};
     for (uint32_t k = 0U; k < (uint32_t) TURNS; k++)

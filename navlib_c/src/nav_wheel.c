@@ -10,7 +10,7 @@
 #include "nav_math.h"
 #include "nav_minmax.h"
 
-#define LEAN_SCAN_M 0.6 /* largest distance in height between a hub and what stands in its box */
+#define LEAN_SCAN_M 0.8 /* largest distance in height between a hub and what stands in its box */
 #define PARALLEL 1.0e-9
 
 #define NOTHING (-0.5 * NAV_ETA_NONE)
@@ -259,10 +259,11 @@ static void raise_along(const track_t *track,
     {
         *high_m = nav_max(*high_m, to->eta_m + disc_m(radius_m, to_along_m));
     }
-    if ((near_m < radius_m) && ((stretch->over_m + disc_m(radius_m, near_m)) > *high_m) &&
-        ((last_m - first_m) > PARALLEL))
+    if ((near_m < radius_m) && ((stretch->over_m + disc_m(radius_m, near_m)) > *high_m))
     {
-        const double slope = (to->eta_m - from->eta_m) / (to->u_m - from->u_m);
+        const double rise_m = to->eta_m - from->eta_m;
+        const double slope =
+            ((to->u_m < from->u_m) ? -rise_m : rise_m) / nav_max(last_m - first_m, PARALLEL);
         const double upright = 1.0 / sqrt(1.0 + (slope * slope));
         const double outward_m = half_m + (radius_m * fabs(slope) * upright);
         const double u_m = nav_clamp((slope < 0.0) ? -outward_m : outward_m, first_m, last_m);
@@ -461,7 +462,7 @@ static void raise_along_inner(const track_t *track, const line_t lines[2], doubl
     }
 }
 
-/** How high a hub can be over ground that it touches between a line and the next; negative: nowhere. */
+/** How high a hub can be over ground that it touches between a line and the next. */
 static double reach_between_m(const track_t *track, const profile_t *profile, uint32_t k)
 {
     const double over_m = nav_max(profile->over_m[k], profile->over_m[k + 1U]);
@@ -472,7 +473,7 @@ static double reach_between_m(const track_t *track, const profile_t *profile, ui
     const double near_m = ((u_0_m * u_1_m) <= 0.0) ? 0.0 : nav_min(fabs(u_0_m), fabs(u_1_m));
     const double along_m =
         nav_max(near_m - (track->places->half_u_m + track->half_u_m + uphill_m), 0.0);
-    return (along_m < track->radius_m) ? disc_m(track->radius_m, along_m) : -NAV_ETA_NONE;
+    return disc_m(track->radius_m, along_m);
 }
 
 /** No ground that a wheel can touch between a line and the next is higher. */
@@ -519,32 +520,51 @@ static double hub_high_m(const track_t *track, const profile_t *profile)
     return high_m;
 }
 
+/** Where the ground of a line is from the middle of the places, at its lowest. */
+static double low_u_m(const track_t *track, const profile_t *profile, uint32_t k)
+{
+    return profile->u_m[k] + (profile->low_m[k] * track->ground->forward_up);
+}
+
+/** Lowest ground that a hub within reach_m of u_m can be over: of all stretches from line to line that
+ * lie there, leaning as slopes make them. */
+static double under_hub_m(const track_t *track,
+                          const profile_t *profile,
+                          double u_m,
+                          double reach_m)
+{
+    double under_m = NAV_ETA_NONE;
+    for (uint32_t k = 0U; (k + 1U) < profile->count; k++)
+    {
+        const double stretch_m = nav_min(profile->under_m[k], profile->under_m[k + 1U]);
+        const double over_m = nav_max(profile->over_m[k], profile->over_m[k + 1U]);
+        const double near_m = reach_m + ((over_m - stretch_m) * fabs(track->ground->forward_up));
+        const double from_m = low_u_m(track, profile, k);
+        const double to_m = low_u_m(track, profile, k + 1U);
+        if (((nav_min(from_m, to_m) - near_m) <= u_m) && (u_m <= (nav_max(from_m, to_m) + near_m)))
+        {
+            under_m = nav_min(under_m, stretch_m);
+        }
+    }
+    return (under_m < NAV_ETA_NONE) ? (under_m * track->ground->cos_slope) : -NAV_ETA_NONE;
+}
+
 /** Lowest hub over a part of the places around u_m: on whatever line it stands highest at least, and
  * not below the ground under its middle. */
 static double part_low_m(const track_t *track, const profile_t *profile, double u_m, double half_m)
 {
-    const nav_ground_t *ground = track->ground;
-    const double spacing_m = fabs(ground->lanes.u_per_major);
     const double reach_m = half_m + track->half_u_m;
     double standing_m = -NAV_ETA_NONE;
-    double under_m = NAV_ETA_NONE;
     for (uint32_t k = 0U; k < profile->count; k++)
     {
-        const double low_m = profile->low_m[k];
-        const double off_m = fabs((profile->u_m[k] + (low_m * ground->forward_up)) - u_m);
-        const double along_m = off_m + reach_m;
+        const double along_m = fabs(low_u_m(track, profile, k) - u_m) + reach_m;
         if (along_m < track->radius_m)
         {
-            standing_m =
-                nav_max(standing_m, (low_m * ground->cos_slope) + disc_m(track->radius_m, along_m));
-        }
-        if ((off_m - reach_m) < spacing_m)
-        {
-            under_m = nav_min(under_m, profile->under_m[k]);
+            standing_m = nav_max(standing_m, (profile->low_m[k] * track->ground->cos_slope) +
+                                                 disc_m(track->radius_m, along_m));
         }
     }
-    under_m = (under_m < NAV_ETA_NONE) ? (under_m * ground->cos_slope) : -NAV_ETA_NONE;
-    return nav_max(standing_m - track->radius_m, under_m);
+    return nav_max(standing_m - track->radius_m, under_hub_m(track, profile, u_m, reach_m));
 }
 
 /** Lowest hub over all places. */
@@ -590,8 +610,8 @@ nav_interval_t nav_wheel_interval(const nav_ground_t *ground,
     nav_box_t touched = *places;
     profile_t profile;
 
-    /* at least one line before and behind the middle */
-    touched.half_u_m += nav_max(touch_reach_m(ground, above, radius_m), fabs(lanes->u_per_major));
+    /* and one line more on either side: what is touched can lie between two */
+    touched.half_u_m += touch_reach_m(ground, above, radius_m) + fabs(lanes->u_per_major);
     nav_indices_t majors = lines_across(lanes, &touched);
     (void) cut_to_map(&majors);
     nav_interval_t hub = {above->low_m * ground->cos_slope, above->high_m * ground->cos_slope};

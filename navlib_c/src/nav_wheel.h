@@ -12,7 +12,7 @@
 #include "nav_ground.h"
 
 /** Terrain whose foot is this far times the slope outside a box can still stand in it. */
-#define NAV_ETA_SCAN_M 0.6
+#define NAV_ETA_SCAN_M 0.8
 
 /** A wheel's box: its hub over the plane, and how the box leans with the body. */
 typedef struct
@@ -41,7 +41,7 @@ nav_span_t nav_wheel_span(const nav_ground_t *ground, const nav_footprint_t *foo
 /**
  * Heights of a wheel's lowest point over the plane, along its normal.
  * @param places  where the wheel's hub can be; its feet, as far as sideways is concerned
- * @param above   between which heights the ground around lies
+ * @param above   between which heights the ground lies in the box and one cell around
  */
 nav_interval_t nav_wheel_interval(const nav_ground_t *ground,
                                   const nav_box_t *places,

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <random>
+
 #include "nav_scene.hpp"
 
 namespace
@@ -132,6 +134,7 @@ TEST(Ace, a_middle_wheel_raised_to_the_bogie_limit_is_refused_for_the_bogie)
             {
                 params.wheel_drop_max_m = 1.0;
                 params.clearance_min_m = 0.1;
+                params.rocker_max_rad = 0.5;
             });
         scene.show([=](double x, double y) { return block(x, y, 0.0, -1.4, 0.5, 0.5, height); });
         return scene.ace(0.0, 0.0, 0.0).reason;
@@ -294,6 +297,37 @@ TEST(Ace, a_belly_too_small_to_hold_a_cell_is_over_nothing_known)
     const nav_ace_bounds_t bounds = scene.ace(0.0, 0.0, 0.0);
     EXPECT_DOUBLE_EQ(1.0, bounds.belly_unknown);
     EXPECT_EQ(static_cast<uint32_t>(NAV_REASON_UNKNOWN), bounds.reason);
+}
+
+TEST(Ace, an_uncertainty_too_large_to_bound_certifies_nothing)
+{
+    Scene scene;
+    scene.show(flat);
+    for (const nav_uncertainty_t &u :
+         {nav_uncertainty_t{0.9, 0.0, 0.0}, nav_uncertainty_t{0.0, 0.5, 0.0}})
+    {
+        const nav_ace_bounds_t bounds = scene.ace(0.25, 0.25, 0.3, u);
+        EXPECT_EQ(0U, bounds.is_certified);
+        EXPECT_NE(static_cast<uint32_t>(NAV_REASON_NONE), bounds.reason);
+    }
+}
+
+TEST(Ace, on_very_rough_ground_nothing_is_safe_and_what_is_certified_is_finite)
+{
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> height(0.0, 0.6);
+    Scene scene;
+    scene.show([&](double, double) { return height(random); });
+    for (double x = -8.0; x <= 8.0; x += 0.9)
+    {
+        for (double y = -8.0; y <= 8.0; y += 1.1)
+        {
+            const nav_ace_bounds_t bounds = scene.ace(x, y, x + y);
+            EXPECT_NE(static_cast<uint32_t>(NAV_REASON_NONE), bounds.reason);
+            EXPECT_TRUE(nav_isfinite(bounds.clearance_min_m));
+            EXPECT_TRUE(nav_isfinite(bounds.tilt_max_rad));
+        }
+    }
 }
 
 TEST(Ace, yaw_uncertainty_widens_the_bound_of_tilt_on_a_slope_with_rocks)

@@ -159,6 +159,28 @@ TEST(Belly, unknown_ground_is_told_by_its_share)
     EXPECT_GT(half.unknown, 0.2);
     EXPECT_LT(half.unknown, 0.6);
     EXPECT_NEAR(HEIGHT_M, half.clearance_min_m, 1e-5);
+    /* what lies beside the belly does not count */
+    const nav_ground_t aside = placed(scene, 0.0, 0.25, 0.45);
+    EXPECT_NEAR(half.unknown, nav_belly_clearance(&aside, &level, &BELLY, HEIGHT_M, 0.0).unknown,
+                0.06);
+}
+
+TEST(Belly, over_nothing_known_all_is_unknown)
+{
+    Scene scene([](nav_params_t &params) { params.costmap_patch_known_min = 0.05; });
+    scene.show(
+        flat, [](double x, double y)
+        { return ((std::fabs(x - 0.11) < 1.6) && (std::fabs(y - 0.25) < 1.2)) ? 1.0 : 0.0; });
+    const nav_pose2_t pose = {0.25, 0.25, 0.0};
+    nav_ground_t ground;
+    /* no plane was fitted here: one is lent */
+    uint32_t index = 0;
+    ASSERT_TRUE(nav_costmap_find(&scene.ctx->costmap, pose.x_m, pose.y_m, &index));
+    scene.ctx->costmap.cells[index].is_known = 1U;
+    ASSERT_TRUE(nav_ground_place(&ground, &scene.ctx->surface, &scene.ctx->costmap,
+                                 &scene.ctx->relief, &pose));
+    const nav_spanned_t level = standing();
+    EXPECT_DOUBLE_EQ(1.0, nav_belly_clearance(&ground, &level, &BELLY, HEIGHT_M, 0.0).unknown);
 }
 
 TEST(Belly, over_the_edge_of_the_map_all_is_unknown)

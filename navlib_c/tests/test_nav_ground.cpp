@@ -193,6 +193,16 @@ TEST(Ground, the_range_is_unknown_where_a_cell_is_or_at_the_edge_of_the_map)
     }
 }
 
+TEST(Ground, a_box_between_the_cells_of_two_costmap_cells_holds_nothing)
+{
+    Scene scene;
+    scene.show(flat);
+    const nav_ground_t ground = placed(scene, 0.25, 0.25, 0.0);
+    nav_interval_t above;
+    const nav_box_t between = {0.25, 0.0, 0.01, 0.01};
+    EXPECT_FALSE(nav_ground_range(&ground, &between, &above));
+}
+
 TEST(Ground, costmap_cells_that_stick_out_of_the_surface_are_not_given)
 {
     Scene scene;
@@ -206,12 +216,14 @@ TEST(Ground, costmap_cells_that_stick_out_of_the_surface_are_not_given)
     const nav_ground_t ground = placed(scene, 0.0, 0.0, 0.0);
     nav_cost_box_t cells;
     const nav_box_t south = {-14.6, 0.0, 0.05, 0.05};
+    const nav_box_t north = {15.1, 0.0, 0.05, 0.05};
     const nav_box_t middle = {0.0, 0.0, 1.0, 1.0};
     EXPECT_FALSE(nav_ground_cost_box(&ground, &south, &cells));
+    EXPECT_FALSE(nav_ground_cost_box(&ground, &north, &cells));
     ASSERT_TRUE(nav_ground_cost_box(&ground, &middle, &cells));
     for (int32_t row = cells.rows.first; row <= cells.rows.last; row++)
     {
-        EXPECT_TRUE(nav_ground_patch(&ground, row, cells.cols.first).is_whole);
+        EXPECT_TRUE(nav_ground_tile(&ground, row, cells.cols.first).is_whole);
     }
 }
 

@@ -151,6 +151,9 @@ TEST(Wheel, unknown_ground_under_it_leaves_what_is_known_around)
     /* and known lines before unknown ones are found behind a shadow, too */
     const nav_ground_t back = placed(scene, 3.14159265358979);
     EXPECT_NEAR(0.0, nav_wheel_interval(&back, &edge, &above, RADIUS_M).high_m, 2e-3);
+    /* where its places reach far into the shadow it could stand as low as the ground around */
+    const nav_box_t far = {1.2, 0.0, 0.4, 0.03};
+    EXPECT_DOUBLE_EQ(-0.1, nav_wheel_interval(&ground, &far, &above, RADIUS_M).low_m);
 }
 
 TEST(Wheel, its_box_counts_cells_and_finds_the_highest_and_lowest)
@@ -175,6 +178,29 @@ TEST(Wheel, its_box_counts_cells_and_finds_the_highest_and_lowest)
     }
 }
 
+TEST(Wheel, at_the_edges_of_the_map_it_stands_on_what_is_there)
+{
+    Scene scene;
+    scene.show(flat);
+    const nav_interval_t above = {-0.1, 0.1};
+    const nav_box_t here = {0.0, 0.0, 0.05, 0.05};
+    for (double x_m : {-14.8, 0.0, 14.8})
+    {
+        for (double y_m : {-14.8, 0.0, 14.8})
+        {
+            for (double yaw : {0.0, 0.6, 1.5707963267948966, 2.4, -0.7, -1.9})
+            {
+                const nav_ground_t ground = placed(scene, yaw, x_m, y_m);
+                const nav_interval_t hub = nav_wheel_interval(&ground, &here, &above, RADIUS_M);
+                EXPECT_LE(hub.high_m, 0.1);
+                EXPECT_GE(hub.high_m, -1e-3);
+                EXPECT_GE(hub.low_m, -0.1);
+                EXPECT_LE(hub.low_m, 1e-3);
+            }
+        }
+    }
+}
+
 TEST(Wheel, cells_off_the_map_are_unknown)
 {
     Scene scene;
@@ -190,6 +216,10 @@ TEST(Wheel, cells_off_the_map_are_unknown)
         EXPECT_LT(span.unknown_count, span.cell_count) << yaw;
         EXPECT_NEAR(0.0, span.above.high_m, 1e-6) << yaw;
     }
+    const nav_ground_t south = placed(scene, 0.0, -14.2, -14.2);
+    nav_footprint_t wide = footprint_at(0.0, 0.0);
+    wide.box.half_u_m = 2.0;
+    EXPECT_GT(nav_wheel_span(&south, &wide).unknown_count, 5U);
     const nav_ground_t ground = placed(scene, 0.0, 14.2, 14.2);
     const nav_footprint_t beyond = footprint_at(3.0, 3.0);
     const nav_span_t nothing = nav_wheel_span(&ground, &beyond);
