@@ -191,11 +191,10 @@ typedef struct
 {
     int32_t first; /* line */
     uint32_t count;
-    double u_m[LINES_MAX];   /* foot of the middle, from that of the places */
-    double low_m[LINES_MAX]; /* lowest between the sides of the places */
-    double under_m
-        [LINES_MAX]; /* no cell that the sides touch between here and the next line is lower */
-    double over_m[LINES_MAX]; /* or higher */
+    double u_m[LINES_MAX];     /* foot of the middle, from that of the places */
+    double low_m[LINES_MAX];   /* lowest between the sides of the places */
+    double under_m[LINES_MAX]; /* lowest cell that the sides touch on their way to the next line, */
+    double over_m[LINES_MAX];  /* and highest */
 } profile_t;
 
 /** What stays the same for one wheel. */
