@@ -22,7 +22,7 @@ from pyharness.thinker import Thinker
 from sim.random_streams import rng_for
 from sim.terrain import Terrain
 from sim.vehicle import Vehicle
-from sim.world import World, true_limit_violation
+from sim.world import World, off_map_reason, true_limit_violation
 
 
 def drive(
@@ -60,6 +60,7 @@ def drive(
         SafetyWatch(
             lambda truth: true_limit_violation(truth, vehicle),  # type: ignore[arg-type]
             Zones(zones).forbids,
+            lambda truth: off_map_reason(truth, terrain),  # type: ignore[arg-type]
         ),
         stream.publish,
     )

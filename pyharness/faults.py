@@ -44,17 +44,19 @@ class SafetyWatch:
     Attributes:
         limit_violation: Names the limit a truth violates, with value and limit; None if it is well.
         is_forbidden: Whether a true position, north and east, violates a zone.
+        off_map_reason: Says why a truth has no pose.
     """
 
     limit_violation: Callable[[Truth], str | None]
     is_forbidden: Callable[[float, float], bool]
+    off_map_reason: Callable[[Truth], str]
 
     def check(self, truth: Truth, verdict: str) -> None:
         """Raise the fault that a true state is, with what the planner last thought of the arc."""
         place = f"true position north {truth.x_m:.2f} m, east {truth.y_m:.2f} m"
         position = (truth.x_m, truth.y_m)
         if not truth.on_map:
-            raise FaultError("left_map", place, *position)
+            raise FaultError("left_map", f"{self.off_map_reason(truth)}; {place}", *position)
         violation = self.limit_violation(truth)
         if violation is not None:
             raise FaultError("limit_violation", f"{violation}; {place}; {verdict}", *position)

@@ -102,9 +102,6 @@ nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
                                 const nav_point_t *points,
                                 uint32_t point_count);
 
-/** Where a block stands in tables, given the global indices of one of its cells. */
-int32_t nav_heightmap_block(int32_t row, int32_t col);
-
 /**
  * Makes the surface: means, expired cells unknown, gaps with enough known neighbours closed. Only blocks
  * are made anew whose map changed since the last surface, by points, by expiry, by rolling, and those

@@ -32,9 +32,6 @@
 #define WHEEL_TRAVEL_M 0.35
 #define WHEEL_SWAY 0.8
 
-/* Largest distance in height between a wheel's hub and what stands in its box. */
-#define WHEEL_LEAN_M 0.8
-
 /* From a point of the surface to the cells it hangs on, on any heading: a diagonal. */
 #define CELLS_AROUND 1.42
 
@@ -217,10 +214,10 @@ static nav_footprint_t wheel_footprint(const view_t *view,
     };
     wheel_middle(view, range, wheel, &footprint.box);
     footprint.box.half_u_m = params->wheel_radius_m + growth->u_m +
-                             (range->half[NAV_LINKAGE_PITCH] * WHEEL_LEAN_M) +
+                             (range->half[NAV_LINKAGE_PITCH] * NAV_STAND_MAX_M) +
                              (common->box_turn * 0.5 * params->wheel_width_m);
     footprint.box.half_v_m = (0.5 * params->wheel_width_m) + growth->v_m +
-                             (range->half[NAV_LINKAGE_ROLL] * WHEEL_LEAN_M);
+                             (range->half[NAV_LINKAGE_ROLL] * NAV_STAND_MAX_M);
     return footprint;
 }
 

@@ -17,9 +17,6 @@
 /* Costmap cells kept to be looked at in the best order. */
 #define UNDER_MAX 32U
 
-/* Ground whose foot is this far times slope or lean outside the box can still stand in it. */
-#define SCAN_M 0.8
-
 /** Affine in a point of the ground: north and east of the pose, and above the plane. */
 typedef struct
 {
@@ -382,8 +379,8 @@ nav_clearance_t nav_belly_clearance(const nav_ground_t *ground,
     nav_cost_box_t cells;
     nav_clearance_t clearance = {NAV_ETA_NONE, 1.0};
 
-    feet.half_u_m += SCAN_M * lean_u;
-    feet.half_v_m += SCAN_M * lean_v;
+    feet.half_u_m += NAV_STAND_MAX_M * lean_u;
+    feet.half_v_m += NAV_STAND_MAX_M * lean_v;
     place_axes(&belly, turn_rad);
     place_clearance(&belly, height_m);
     place_spread(&belly);

@@ -20,6 +20,10 @@
 /** Height of what is not known. */
 #define NAV_ETA_NONE 1.0e9
 
+/** How far above or below a hub or the belly's ground level what stands in its box is looked for: boxes
+ * are scanned wider by this times slope and lean. */
+#define NAV_STAND_MAX_M 0.8
+
 /** Rows and columns of the grid. */
 #define NAV_GROUND_AXES 2U
 

@@ -635,12 +635,6 @@ nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
     return merge;
 }
 
-int32_t nav_heightmap_block(int32_t row, int32_t col)
-{
-    return (nav_wrap_index(block_of(row), NAV_SIDE) * NAV_SIDE) +
-           nav_wrap_index(block_of(col), NAV_SIDE);
-}
-
 void nav_heightmap_surface(nav_heightmap_t *map,
                            const nav_params_t *params,
                            double time_s,

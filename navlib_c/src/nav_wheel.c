@@ -10,7 +10,6 @@
 #include "nav_math.h"
 #include "nav_minmax.h"
 
-#define LEAN_SCAN_M 0.8 /* largest distance in height between a hub and what stands in its box */
 #define PARALLEL 1.0e-9
 
 #define NOTHING (-0.5 * NAV_ETA_NONE)
@@ -88,10 +87,10 @@ static nav_indices_t cells_across(const nav_lanes_t *lanes,
 nav_box_t nav_wheel_feet(const nav_ground_t *ground, const nav_footprint_t *footprint)
 {
     nav_box_t feet = footprint->box;
-    feet.half_u_m +=
-        (NAV_ETA_SCAN_M * fabs(ground->rise_forward)) + (LEAN_SCAN_M * fabs(footprint->pitch_rad));
-    feet.half_v_m +=
-        (NAV_ETA_SCAN_M * fabs(ground->rise_right)) + (LEAN_SCAN_M * fabs(footprint->roll_rad));
+    feet.half_u_m += (NAV_STAND_MAX_M * fabs(ground->rise_forward)) +
+                     (NAV_STAND_MAX_M * fabs(footprint->pitch_rad));
+    feet.half_v_m += (NAV_STAND_MAX_M * fabs(ground->rise_right)) +
+                     (NAV_STAND_MAX_M * fabs(footprint->roll_rad));
     return feet;
 }
 

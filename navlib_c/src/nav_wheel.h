@@ -11,9 +11,6 @@
 
 #include "nav_ground.h"
 
-/** Terrain whose foot is this far times the slope outside a box can still stand in it. */
-#define NAV_ETA_SCAN_M 0.8
-
 /** A wheel's box: its hub over the plane, and how the box leans with the body. */
 typedef struct
 {

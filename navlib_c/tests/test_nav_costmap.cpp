@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include "nav_blocks.hpp"
+
 extern "C"
 {
 #include "nav_costmap.h"
@@ -651,7 +653,7 @@ TEST_F(NavCostmap, AChangeReachesAsFarAsItsPatches)
         cell.tilt_rad = 7.0F;
     }
     changes->surface_count += 1U;
-    changes->changed_at[nav_heightmap_block(3, 3)] = changes->surface_count; // cell 0, 0
+    changes->changed_at[block_in_tables(3, 3)] = changes->surface_count; // cell 0, 0
     update_changed();
     const int half = static_cast<int>(params.costmap_patch_cells) / 2;
     for (int row = -10; row <= 10; row++)

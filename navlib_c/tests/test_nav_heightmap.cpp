@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "nav_blocks.hpp"
+
 extern "C"
 {
 #include "nav_heightmap.h"
@@ -77,7 +79,7 @@ class NavHeightmap : public ::testing::Test
 
     bool is_stamped(int32_t row, int32_t col) const
     {
-        return state->changed_at[nav_heightmap_block(row, col)] == state->surface_count;
+        return state->changed_at[block_in_tables(row, col)] == state->surface_count;
     }
 
     int stamped_count() const

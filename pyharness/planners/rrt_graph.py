@@ -91,7 +91,6 @@ class Path:
 
     points_m: Floats
     cost: float
-    vertex_count: int
     edge_count: int
 
 
@@ -212,7 +211,7 @@ class _Graph:
             chain.append(vertex)
             vertex = self.parent[vertex]
         points_m = self.places_m[chain[::-1]]
-        return Path(points_m, self.best_cost, self.count, self.edge_count)
+        return Path(points_m, self.best_cost, self.edge_count)
 
     def _radius_m(self) -> float:
         """Return how far neighbours lie, which shrinks as the graph grows."""

@@ -32,7 +32,7 @@ class Drive:
             arcs,
             waypoints,
             self.config,
-            safety or SafetyWatch(lambda _: None, lambda *_: False),
+            safety or SafetyWatch(lambda _: None, lambda *_: False, lambda _: "gone"),
             stream.publish,
         )
 

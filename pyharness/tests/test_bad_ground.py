@@ -55,6 +55,7 @@ def test_the_edge_of_the_map_is_left_map(monkeypatch, tmp_path):
     assert code == 3
     assert summary["outcome"] == "left_map"
     assert "true position north" in summary["fault_detail"]
+    assert "over the edge of the map" in summary["fault_detail"]
 
 
 @pytest.mark.parametrize("east_m", [(-20.0, 20.0), (0.9, 1.3), (-0.6, 0.6)])

@@ -220,6 +220,7 @@ def test_a_true_violation_ends_the_drive_and_says_what_navlib_thought(make_drive
     safety = SafetyWatch(
         lambda truth: "tilt 40 deg over tilt_max_deg 35" if truth.x_m > 8.0 else None,
         lambda *_: False,
+        str,
     )
     outcome = make_drive(safety=safety).run()
     assert outcome.outcome == "limit_violation"
@@ -228,7 +229,7 @@ def test_a_true_violation_ends_the_drive_and_says_what_navlib_thought(make_drive
 
 
 def test_a_true_position_in_a_zone_is_a_fault(make_drive):
-    safety = SafetyWatch(lambda _: None, lambda north_m, _: north_m > 9.0)
+    safety = SafetyWatch(lambda _: None, lambda north_m, _: north_m > 9.0, str)
     assert make_drive(safety=safety).run().outcome == "kioz_violation"
 
 

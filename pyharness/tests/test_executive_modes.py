@@ -175,7 +175,7 @@ def test_without_a_crawl_it_looks_before_it_moves(make_drive):
 
 
 def test_a_violation_in_the_crawl_is_known_to_be_unguarded(make_drive):
-    safety = SafetyWatch(lambda truth: "bump" if truth.x_m > 2.0 else None, lambda *_: False)
+    safety = SafetyWatch(lambda truth: "bump" if truth.x_m > 2.0 else None, lambda *_: False, str)
     assert "in mode unguarded said safe" in make_drive(safety=safety).run().fault_detail
 
 

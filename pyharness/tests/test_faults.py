@@ -104,8 +104,8 @@ def test_on_a_fault_the_rover_stops_and_the_records_are_complete(name, tmp_path,
 
 def test_the_watch_names_where_and_what_the_planner_thought(fake_world):
     truth = replace(fake_world().state, x_m=3.0)
-    SafetyWatch(lambda _: None, lambda *_: False).check(truth, "said safe")
+    SafetyWatch(lambda _: None, lambda *_: False, str).check(truth, "said safe")
     with pytest.raises(FaultError) as caught:
-        SafetyWatch(lambda _: "tilt", lambda *_: True).check(truth, "said safe")
+        SafetyWatch(lambda _: "tilt", lambda *_: True, str).check(truth, "said safe")
     assert caught.value.detail == "tilt; true position north 3.00 m, east 0.00 m; said safe"
     assert caught.value.values == (3.0, 0.0)
