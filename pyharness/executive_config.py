@@ -72,7 +72,7 @@ class StuckRules(_Section):
 
     slip_window_m: Positive = 5.0  # of commanded path: a few arcs, so that one bad one is forgiven
     slip_progress_min: Share = 0.3  # less of it actually moved is digging in
-    progress_window_m: Positive = 100.0  # of commanded path without coming nearer to the goal
+    progress_window_m: Positive = 200.0  # of path without coming nearer: two dead ends 50 m deep
 
 
 class ExecutiveConfig(_Section):
@@ -88,7 +88,9 @@ class ExecutiveConfig(_Section):
     evaluate_remaining_min: Share = 0.05  # of the arc: less is over before an answer comes
     replans_max: Annotated[int, Field(ge=0, le=100)] = 3
     # where the mast looks when no path was found, from straight ahead, clockwise
-    look_around_deg: Annotated[tuple[AzimuthDeg, ...], Field(min_length=1)] = (-60.0, 0.0, 60.0)
+    look_around_deg: Annotated[tuple[AzimuthDeg, ...], Field(min_length=1)] = (
+        -120.0, -60.0, 0.0, 60.0, 120.0
+    )  # fmt: skip
     time_limit_s: Positive = 21600.0  # 6 h: a long sol of driving
     compute: Annotated[ComputeTimes, BeforeValidator(_compute_times)] = ComputeTimes()
     uncertainty: PoseUncertainty = PoseUncertainty()

@@ -21,6 +21,9 @@
 #define NAV_CELLS_PER_COST_CELL 5
 #endif
 
+/** Headings over a costmap cell, evenly spaced from north: forwards and backwards are the same. */
+#define NAV_HEADINGS 4
+
 /** Points in one chunk of a point cloud. */
 #ifndef NAV_CHUNK_POINTS_MAX
 #define NAV_CHUNK_POINTS_MAX 8192

@@ -10,6 +10,7 @@
 #ifndef NAV_COSTMAP_H
 #define NAV_COSTMAP_H
 
+#include "nav_arc.h"
 #include "nav_heightmap.h"
 #include "nav_kioz.h"
 
@@ -21,12 +22,16 @@
     S(float, roughness_m2, "m^2", "mean squared residual to the plane")                            \
     S(float, cost_s_per_m, "s/m", "time and terrain, per metre driven")                            \
     S(uint32_t, ace_cycle, "1", "analysis in which ACE last failed here")                          \
-    S(uint16_t, ace_failed_count, "1", "ACE poses failed here since one passed")                   \
-    S(uint8_t, ace_reason, "1", "nav_reason_t of the last of them")                                \
+    S(uint8_t, ace_failed_headings, "1",                                                           \
+      "bit k: ACE failed last along heading k * 45 deg or back")                                   \
+    S(uint8_t, ace_reason, "1", "nav_reason_t of its last failure")                                \
     S(uint8_t, terrain_reason, "1", "nav_reason_t: tilt, unexpected, or none")                     \
     S(uint8_t, is_known, "1", "1 when a plane has been fitted")                                    \
     S(uint8_t, is_forbidden, "1", "1 when zones forbid it")                                        \
-    A(uint8_t, pad_0, 2, "1", "zero")
+    S(uint8_t, barred_headings, "1", "bit k: obstacles under a rover that stands so")              \
+    A(uint8_t, pad_0, 2, "1", "zero")                                                              \
+    S(uint32_t, belly_obstacles, "1", "bit 5 * row + column: too high for the belly")              \
+    S(uint32_t, wheel_obstacles, "1", "the same: too high or too deep for a wheel")
 NAV_RECORD(NAV_COST_CELL_FIELDS, nav_cost_cell_t);
 
 #define NAV_COSTMAP_FIELDS(S, A, N, M)                                                             \
@@ -106,17 +111,26 @@ void nav_costmap_mark(nav_costmap_t *map,
 /** Index of the cell a position falls in. @return false, *index = 0, outside the map */
 bool nav_costmap_find(const nav_costmap_t *map, double x_site_m, double y_site_m, uint32_t *index);
 
-/** The reason why a cell is infinite for planning round terrain and/or zones; NONE when it is not. */
+/**
+ * The reason why a cell is infinite for planning round terrain and/or zones; NONE when it is not. ACE
+ * makes a cell infinite by failing along every heading.
+ */
 nav_reason_t nav_costmap_reason(const nav_cost_cell_t *cell,
                                 const nav_params_t *params,
                                 bool use_terrain,
                                 bool use_zones);
 
-/** Feeds back the verdict of one ACE pose: a pass opens the cell, a failure counts. */
-void nav_costmap_feedback(nav_costmap_t *map,
-                          double x_site_m,
-                          double y_site_m,
-                          nav_reason_t reason);
+/** The heading nearest to a yaw. */
+uint32_t nav_costmap_heading(double yaw_rad);
+
+/**
+ * Headings along which a way over a cell is dearer, a bit each: those along which ACE failed last, and
+ * those along which obstacles stand in the way.
+ */
+uint32_t nav_costmap_barred(const nav_cost_cell_t *cell);
+
+/** Feeds back the verdict of ACE on a pose, for the nearest heading over its cell. */
+void nav_costmap_feedback(nav_costmap_t *map, const nav_pose2_t *pose, nav_reason_t reason);
 
 /** Opens every cell closed by ACE. */
 void nav_costmap_clear_feedback(nav_costmap_t *map);

@@ -10,7 +10,7 @@
 #ifndef NAV_GLOBAL_H
 #define NAV_GLOBAL_H
 
-#include "nav_costmap.h"
+#include "nav_passage.h"
 
 /** Cost of what cannot be reached, s. */
 #define NAV_COST_INFINITE 1.0e12
@@ -33,9 +33,11 @@ typedef struct
     double cost_to_go_s[NAV_GLOBAL_NODES]; /* NAV_COST_INFINITE where unreachable */
     double
         cost_s_per_m[NAV_GLOBAL_NODES]; /* of the last plan; NAV_COST_BLOCKED_S_PER_M if blocked */
-    int32_t next[NAV_GLOBAL_LINKS];     /* rings; behind the nodes stand the heads of the lists */
+    uint8_t barred_headings[NAV_GLOBAL_NODES];
+    int32_t next[NAV_GLOBAL_LINKS]; /* rings; behind the nodes stand the heads of the lists */
     int32_t previous[NAV_GLOBAL_LINKS];
     double first_s;          /* where the interval of the first list begins */
+    double barred_factor;    /* of an edge along a barred heading */
     double buckets_per_s;    /* 1 / length of an interval, half the least edge at most */
     int32_t bucket;          /* all before it are empty */
     uint32_t is_goal_inside; /* of the last plan */

@@ -31,10 +31,17 @@
       "weight of the mean squared residual [C]: 5 cm rms cost as much as 0.4 m more to drive")     \
     X(cost_unknown_factor, 1.5, 1.0, 100.0, "1",                                                   \
       "unknown ground against known flat ground [C]: finite, so that goals out of sight attract")  \
-    X(ace_feedback_poses, 3.0, 1.0, 1000.0, "1",                                                   \
-      "failed ACE poses in a cell, none passed, that make it infinite [C]")                        \
-    X(ace_feedback_cycles, 5.0, 0.0, 1000.0, "1",                                                  \
-      "analyses after which such a cell is opened again [C]: new images may clear it")             \
+    X(cost_barred_factor, 30.0, 1.0, 1000.0, "1",                                                  \
+      "a way over an obstacle that does not fit under the rover, against plain ground [C]: a "     \
+      "detour of 29 m for a metre of it; finite, for ACE may find a way")                          \
+    X(barred_growth_m, 0.1, 0.0, 1.0, "m",                                                         \
+      "growth of the footprint that bars ways [C]: with these two it agrees best with ACE")        \
+    X(barred_margin_m, 0.04, 0.0, 0.2, "m",                                                        \
+      "height by which an obstacle bars a way before it breaks a limit of ACE [C]: wheels on "     \
+      "uneven ground lower the belly")                                                             \
+    X(ace_feedback_cycles, 50.0, 0.0, 1000.0, "1",                                                 \
+      "analyses after which ACE's failures in a cell are forgotten [C]: enough to look for a way " \
+      "elsewhere within the costmap")                                                              \
     X(speed_max_m_per_s, 0.042, 0.001, 1.0, "m/s", "speed of the fastest wheel [E]")               \
     X(steering_rate_rad_per_s, 0.0872664626, 0.001, 10.0, "rad/s",                                 \
       "rate of the steering actuators [C]: 5 deg/s")                                               \
@@ -57,11 +64,12 @@
       "a path may end this much further from the goal than it starts [C]")                         \
     X(uncertainty_growth, 0.03, 0.0, 1.0, "m/m",                                                   \
       "growth of position uncertainty along a path [C]")                                           \
-    X(uncertainty_position_max_m, 0.10, 0.0, 2.0, "m",                                             \
-      "bound of that growth [C]: every metre is planned again with a fresh estimate")              \
-    X(uncertainty_yaw_growth_rad_per_m, 0.0087266463, 0.0, 1.0, "rad/m",                           \
-      "growth of yaw uncertainty along a path [C]: 0.5 deg/m")                                     \
-    X(uncertainty_yaw_max_rad, 0.0349065850, 0.0, 1.0, "rad", "bound of that growth [C]: 2 deg")   \
+    X(uncertainty_position_max_m, 0.05, 0.0, 2.0, "m",                                             \
+      "bound of that growth [C]: drift of two metres; every metre is planned again with a fresh "  \
+      "estimate")                                                                                  \
+    X(uncertainty_yaw_growth_rad_per_m, 0.0043633231, 0.0, 1.0, "rad/m",                           \
+      "growth of yaw uncertainty along a path [C]: 0.25 deg/m")                                    \
+    X(uncertainty_yaw_max_rad, 0.0087266463, 0.0, 1.0, "rad", "bound of that growth [C]: 0.5 deg") \
     X(clearance_min_m, 0.35, 0.0, 1.0, "m",                                                        \
       "least belly clearance [S]: nominal 0.60 less the 25 cm rock that SIM calls a hazard")       \
     X(tilt_max_rad, 0.5235987756, 0.05, 1.2, "rad",                                                \

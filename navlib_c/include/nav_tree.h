@@ -15,6 +15,14 @@
 /** Candidates: the paths of the tree, and what is left of the path selected before. */
 #define NAV_TREE_CANDIDATES (NAV_TREE_PATHS + 1)
 
+/**
+ * Last resorts, when no candidate passes: from NAV_TREE_SHORT the first arcs of the tree alone, from
+ * NAV_TREE_BACK as many arcs backwards.
+ */
+#define NAV_TREE_SHORT NAV_TREE_CANDIDATES
+#define NAV_TREE_BACK (NAV_TREE_SHORT + NAV_TREE_FIRST_ARCS)
+#define NAV_TREE_NONE (NAV_TREE_BACK + NAV_TREE_ARCS)
+
 /** A path as three arcs, any of which may be empty, from an expected pose. */
 #define NAV_PATH_FIELDS(S, A, N, M)                                                                \
     S(double, x_site_m, "m", "expected start")                                                     \
@@ -35,6 +43,7 @@ NAV_RECORD(NAV_PATH_FIELDS, nav_path_t);
  */
 #define NAV_TREE_FIELDS(S, A, N, M)                                                                \
     A(double, path_cost_s, NAV_TREE_CANDIDATES, "s", "1e12 when it crosses an infinite cell")      \
+    A(double, first_cost_s, NAV_TREE_FIRST_ARCS, "s", "of a first arc alone")                      \
     N(nav_path_t, kept, "what is left of the selected path")                                       \
     M(nav_ace_bounds_t, turn_bounds, NAV_TREE_TURNS, "worst bounds along a tested turn")           \
     M(nav_ace_bounds_t, first_bounds, NAV_TREE_FIRST_ARCS, "worst bounds to the end of it")        \
@@ -70,7 +79,8 @@ NAV_RECORD(NAV_SELECT_ARC_IN_FIELDS, nav_select_arc_in_t);
 
 #define NAV_SELECT_ARC_OUT_FIELDS(S, A, N, M)                                                      \
     S(uint32_t, status, "1", "nav_status_t: OK or NO_PATH")                                        \
-    S(uint32_t, path_index, "1", "selected candidate; 1694: the rest of the last one")             \
+    S(uint32_t, path_index, "1",                                                                   \
+      "selected; 1694 rest of the last path, 1695.. first arcs, 1849.. back")                      \
     N(nav_arc_t, arc, "what to drive next")                                                        \
     S(double, path_cost_s, "s", "of the selected path")                                            \
     S(double, cost_to_go_s, "s", "from its end to the goal, part of path_cost_s")                  \

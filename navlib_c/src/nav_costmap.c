@@ -20,7 +20,8 @@
 /* The reference of heights is a multiple of this: it hardly ever changes. */
 #define NAV_REFERENCE_STEP_M 128.0
 #define NAV_SIDE ((int32_t) NAV_BLOCKS_SIDE)
-#define NAV_FAILED_COUNT_MAX 65535U
+#define NAV_HEADING_COUNT ((uint32_t) NAV_HEADINGS)
+#define NAV_ALL_HEADINGS (((uint32_t) 1U << NAV_HEADING_COUNT) - 1U)
 
 /* Known cells on one line leave a determinant of rounding errors only. */
 #define NAV_SINGULAR_SHARE 1.0e-9
@@ -403,7 +404,7 @@ static bool is_state_usable(const nav_costmap_state_t *state,
 
 static void open_cell(nav_cost_cell_t *cell)
 {
-    cell->ace_failed_count = 0U;
+    cell->ace_failed_headings = 0U;
     cell->ace_reason = (uint8_t) NAV_REASON_NONE;
 }
 
@@ -586,7 +587,7 @@ nav_reason_t nav_costmap_reason(const nav_cost_cell_t *cell,
     {
         reason = (nav_reason_t) cell->terrain_reason;
     }
-    else if (use_terrain && ((double) cell->ace_failed_count >= params->ace_feedback_poses))
+    else if (use_terrain && ((uint32_t) cell->ace_failed_headings == NAV_ALL_HEADINGS))
     {
         reason = (nav_reason_t) cell->ace_reason;
     }
@@ -597,26 +598,39 @@ nav_reason_t nav_costmap_reason(const nav_cost_cell_t *cell,
     return reason;
 }
 
-void nav_costmap_feedback(nav_costmap_t *map, double x_site_m, double y_site_m, nav_reason_t reason)
+uint32_t nav_costmap_heading(double yaw_rad)
+{
+    const double steps = nav_wrap_angle(yaw_rad) * ((double) NAV_HEADINGS / NAV_PI);
+    int32_t heading = 0;
+
+    (void) nav_floor_index(steps + 0.5, &heading);
+    return (uint32_t) nav_wrap_index(heading, (int32_t) NAV_HEADINGS);
+}
+
+uint32_t nav_costmap_barred(const nav_cost_cell_t *cell)
+{
+    return (uint32_t) cell->barred_headings | (uint32_t) cell->ace_failed_headings;
+}
+
+void nav_costmap_feedback(nav_costmap_t *map, const nav_pose2_t *pose, nav_reason_t reason)
 {
     uint32_t index = 0U;
 
-    if (nav_costmap_find(map, x_site_m, y_site_m, &index))
+    if (nav_costmap_find(map, pose->x_m, pose->y_m, &index))
     {
         nav_cost_cell_t *cell = &map->cells[index];
+        const uint32_t heading = (uint32_t) 1U << nav_costmap_heading(pose->yaw_rad);
+        const uint32_t failed = (uint32_t) cell->ace_failed_headings;
 
         if (reason == NAV_REASON_NONE)
         {
-            open_cell(cell);
+            cell->ace_failed_headings = (uint8_t) (failed & ~heading);
         }
         else
         {
             cell->ace_cycle = map->cycle;
             cell->ace_reason = (uint8_t) reason;
-            if (cell->ace_failed_count < NAV_FAILED_COUNT_MAX)
-            {
-                cell->ace_failed_count = (uint16_t) (cell->ace_failed_count + 1U);
-            }
+            cell->ace_failed_headings = (uint8_t) (failed | heading);
         }
     }
 }

@@ -160,12 +160,34 @@ static bool is_step_open(const nav_global_t *global, int32_t node, nav_step_t st
               is_blocked(global, node + step.col)));
 }
 
-static double edge_cost_s(const nav_global_t *global,
-                          int32_t node,
-                          int32_t neighbor,
-                          double length_m)
+/* The heading along which a step is driven, one way or the other. */
+static uint32_t step_heading(int32_t neighbor)
 {
-    return length_m * ((global->cost_s_per_m[node] + global->cost_s_per_m[neighbor]) * 0.5);
+    static const uint8_t headings[NAV_NEIGHBORS] = {1, 0, 3, 2, 2, 3, 0, 1};
+
+    return headings[neighbor];
+}
+
+/* Barred at either end, or squeezing through between two barred cells that touch at a corner. */
+static bool is_step_barred(const nav_global_t *global, int32_t node, int32_t index)
+{
+    const nav_step_t step = step_to(index);
+    const uint32_t ends = (uint32_t) global->barred_headings[node] |
+                          (uint32_t) global->barred_headings[neighbor_at(node, step)];
+    const uint32_t sides = (uint32_t) global->barred_headings[node + (step.row * NAV_STRIDE)] &
+                           (uint32_t) global->barred_headings[node + step.col];
+
+    return (((ends | sides) >> step_heading(index)) & 1U) != 0U;
+}
+
+/* Of a part of a step to a neighbour, driven one way or the other. */
+static double step_cost_s(const nav_global_t *global, int32_t node, int32_t index, double length_m)
+{
+    const int32_t neighbor = neighbor_at(node, step_to(index));
+    const double cost_s =
+        length_m * ((global->cost_s_per_m[node] + global->cost_s_per_m[neighbor]) * 0.5);
+
+    return is_step_barred(global, node, index) ? (cost_s * global->barred_factor) : cost_s;
 }
 
 static double step_length_m(nav_step_t step, double cell_m)
@@ -182,7 +204,7 @@ static void relax_neighbors(nav_global_t *global, int32_t node, double cell_m)
         const nav_step_t step = step_to(index);
         const int32_t neighbor = neighbor_at(node, step);
         const double cost_s = global->cost_to_go_s[node] +
-                              edge_cost_s(global, node, neighbor, step_length_m(step, cell_m));
+                              step_cost_s(global, node, index, step_length_m(step, cell_m));
 
         if ((cost_s < global->cost_to_go_s[neighbor]) && is_step_open(global, node, step))
         {
@@ -262,6 +284,7 @@ static void reset(nav_global_t *global,
     for (int32_t node = 0; node < NAV_NODES; node++)
     {
         global->cost_s_per_m[node] = NAV_COST_BLOCKED_S_PER_M;
+        global->barred_headings[node] = 0U;
         global->cost_to_go_s[node] = NAV_COST_INFINITE;
     }
     for (int32_t link = 0; link < (int32_t) NAV_GLOBAL_LINKS; link++)
@@ -273,14 +296,17 @@ static void reset(nav_global_t *global,
     {
         for (int32_t col = 0; col < NAV_SIZE; col++)
         {
-            const double cost_s_per_m = free_cost_s_per_m(&map->cells[(row * NAV_SIZE) + col],
-                                                          params, use_terrain, use_zones);
+            const nav_cost_cell_t *cell = &map->cells[(row * NAV_SIZE) + col];
+            const double cost_s_per_m = free_cost_s_per_m(cell, params, use_terrain, use_zones);
 
             global->cost_s_per_m[node_at(row, col)] = cost_s_per_m;
+            global->barred_headings[node_at(row, col)] =
+                use_terrain ? (uint8_t) nav_costmap_barred(cell) : 0U;
             least_s_per_m = nav_min(least_s_per_m, cost_s_per_m);
         }
     }
     global->first_s = 0.0;
+    global->barred_factor = params->cost_barred_factor;
     global->buckets_per_s = 2.0 / (nav_max(least_s_per_m, NAV_COST_LEAST_S_PER_M) * map->cell_m);
     global->bucket = 0;
 }
@@ -377,7 +403,7 @@ static int32_t next_node(const nav_global_t *global, int32_t node, double cell_m
         const nav_step_t step = step_to(index);
         const int32_t neighbor = neighbor_at(node, step);
         const double cost_s = global->cost_to_go_s[neighbor] +
-                              edge_cost_s(global, neighbor, node, step_length_m(step, cell_m));
+                              step_cost_s(global, node, index, step_length_m(step, cell_m));
 
         /* the plan made the node's cost by this very sum: it is met to the last bit */
         if ((cost_s <= global->cost_to_go_s[node]) && is_step_open(global, node, step))
@@ -395,7 +421,7 @@ static double least_over_neighbors_s(const nav_global_t *global,
                                      double y_site_m)
 {
     const double own_m = distance_to_node_m(map, node, x_site_m, y_site_m);
-    double least_s = global->cost_to_go_s[node] + edge_cost_s(global, node, node, own_m);
+    double least_s = global->cost_to_go_s[node] + (own_m * global->cost_s_per_m[node]);
 
     for (int32_t index = 0; index < NAV_NEIGHBORS; index++)
     {
@@ -407,7 +433,7 @@ static double least_over_neighbors_s(const nav_global_t *global,
             const double way_m = distance_to_node_m(map, neighbor, x_site_m, y_site_m);
 
             least_s = nav_min(least_s, global->cost_to_go_s[neighbor] +
-                                           edge_cost_s(global, node, neighbor, way_m));
+                                           step_cost_s(global, node, index, way_m));
         }
     }
     return nav_min(least_s, NAV_COST_INFINITE);

@@ -160,6 +160,7 @@ nav_status_t nav_init(nav_ctx_t *ctx, const nav_init_in_t *in, nav_init_out_t *o
             nav_heightmap_init(&ctx->heightmap, &ctx->params);
             nav_costmap_init(&ctx->costmap, &ctx->params);
             nav_tree_init(&ctx->params, &ctx->tree_shapes);
+            nav_passage_init(&ctx->params, &ctx->footprint);
             ctx->magic = (uint32_t) NAV_CONTEXT_MAGIC;
             nav_evr_report(time_s, NAV_EVR_INITIALIZED, (double) NAV_PARAM_COUNT, 0.0, 0.0, 0.0);
         }
@@ -397,6 +398,8 @@ static void analyze(nav_ctx_t *ctx,
                        &ctx->surface_state);
     nav_costmap_mark(&ctx->costmap, &ctx->params, &ctx->kioz, in->global_position_m);
     nav_relief_update(&ctx->relief, &ctx->costmap, &ctx->costmap_state, &ctx->surface);
+    nav_passage_update(&ctx->costmap, &ctx->costmap_state, &ctx->params, &ctx->footprint,
+                       &ctx->relief, &ctx->surface);
     ctx->is_analyzed = 1U;
 
     for (uint32_t k = 0U; k < (uint32_t) NAV_COSTMAP_CELLS; k++)
@@ -540,7 +543,7 @@ static nav_status_t select_arc(nav_ctx_t *ctx,
     ctx->time_s = in->time_s;
     nav_global_plan(&ctx->global, &ctx->costmap, &ctx->params, &in->goal, use_terrain, use_zones);
     nav_tree_select(&ctx->tree, &scene, in, out);
-    if (out->status == (uint32_t) NAV_NO_PATH)
+    if ((out->status == (uint32_t) NAV_NO_PATH) && (out->paths_tested == 0U))
     {
         /* what ACE closed may be what stands in the way of the next attempt */
         nav_costmap_clear_feedback(&ctx->costmap);

@@ -59,7 +59,6 @@ static uint32_t check_whole_numbers(const nav_params_t *params)
         {is_fraction(params->surface_fill_neighbors), NAV_PARAM_INDEX(surface_fill_neighbors)},
         {is_fraction((params->costmap_patch_cells - 1.0) / 2.0),
          NAV_PARAM_INDEX(costmap_patch_cells)},
-        {is_fraction(params->ace_feedback_poses), NAV_PARAM_INDEX(ace_feedback_poses)},
         {is_fraction(params->ace_feedback_cycles), NAV_PARAM_INDEX(ace_feedback_cycles)},
         {is_fraction(params->ace_budget_poses), NAV_PARAM_INDEX(ace_budget_poses)},
         {is_fraction(params->product_level), NAV_PARAM_INDEX(product_level)}};

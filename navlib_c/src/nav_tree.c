@@ -54,8 +54,8 @@ typedef struct
 {
     nav_pose2_t start;
     nav_arc_t arc;
-    uint32_t pose_count; /* 0 for an empty arc */
-    double spacing_m;
+    uint32_t pose_count;             /* 0 for an empty arc */
+    double spacing_m;                /* of the poses, not negative */
     const nav_tree_shapes_t *shapes; /* null for an arc that is not the tree's */
     uint32_t shape;
     double cos_sin[2]; /* of the start's yaw */
@@ -133,7 +133,7 @@ static walk_t arc_walk(const call_t *call, const nav_pose2_t *start, const nav_a
     if (!is_empty_arc(arc))
     {
         walk.pose_count = nav_arc_pose_count(call->params, arc);
-        walk.spacing_m = arc->length_m / (double) walk.pose_count;
+        walk.spacing_m = fabs(arc->length_m) / (double) walk.pose_count;
     }
     return walk;
 }
@@ -174,10 +174,18 @@ static nav_reason_t terrain_cost(const call_t *call, const nav_pose2_t *pose, do
     {
         /* cells that ACE closed may be crossed: ACE judges every pose itself */
         nav_cost_cell_t cell = call->scene->costmap->cells[index];
-        cell.ace_failed_count = 0U;
+        const uint32_t barred = nav_costmap_barred(&cell);
+        cell.ace_failed_headings = 0U;
         reason =
             nav_costmap_reason(&cell, call->params, call->use_terrain_cost, call->use_zone_cost);
-        *cost_s_per_m = call->use_terrain_cost ? ((double) cell.cost_s_per_m - plain_s_per_m) : 0.0;
+        *cost_s_per_m = 0.0;
+        if (call->use_terrain_cost)
+        {
+            const bool is_barred = ((barred >> nav_costmap_heading(pose->yaw_rad)) & 1U) != 0U;
+            *cost_s_per_m = ((double) cell.cost_s_per_m *
+                             (is_barred ? call->params->cost_barred_factor : 1.0)) -
+                            plain_s_per_m;
+        }
     }
     else
     {
@@ -257,9 +265,11 @@ static double steering_s(const call_t *call, const nav_steering_t *from, const n
     return nav_arc_steering_duration_s(call->params, from, &to);
 }
 
-/** Writes the cost, or the reason of an infinite one, of one path. */
-static void path_rank(
-    const call_t *call, nav_tree_t *tree, uint32_t path, double before_s, const branch_t *leaf)
+/** Cost of a path whose last arc is the leaf, or the reason of an infinite one. */
+static nav_reason_t path_cost(const call_t *call,
+                              double before_s,
+                              const branch_t *leaf,
+                              double *cost_s)
 {
     double to_go_s = 0.0;
     nav_reason_t reason = leaf->reason;
@@ -271,9 +281,14 @@ static void path_rank(
     {
         reason = leaf_reason(call, leaf);
     }
-    tree->path_reason[path] = (uint8_t) reason;
-    tree->path_cost_s[path] =
-        (reason == NAV_REASON_NONE) ? (before_s + leaf->cost_s + to_go_s) : NAV_COST_INFINITE;
+    *cost_s = (reason == NAV_REASON_NONE) ? (before_s + leaf->cost_s + to_go_s) : NAV_COST_INFINITE;
+    return reason;
+}
+
+static void path_rank(
+    const call_t *call, nav_tree_t *tree, uint32_t path, double before_s, const branch_t *leaf)
+{
+    tree->path_reason[path] = (uint8_t) path_cost(call, before_s, leaf, &tree->path_cost_s[path]);
 }
 
 /** Ranks the 11 paths that go on from a first arc. */
@@ -357,8 +372,10 @@ static void rank(const call_t *call, nav_tree_t *tree)
             const walk_t walk = tree_walk(call, &turned, k);
             const branch_t first = branch_follow(call, &walk);
             const nav_steering_t *steering = (turn > 0U) ? &in_place : &call->in->steering;
-            rank_seconds(call, tree, (turn * ARCS) + k, &first,
-                         turn_s + steering_s(call, steering, &arc));
+            const double before_s = turn_s + steering_s(call, steering, &arc);
+            const uint32_t node = (turn * ARCS) + k;
+            rank_seconds(call, tree, node, &first, before_s);
+            (void) path_cost(call, before_s, &first, &tree->first_cost_s[node]);
         }
     }
 }
@@ -486,7 +503,7 @@ static nav_reason_t test_pose(call_t *call,
         worsen(worst, &bounds);
         reason = nav_ace_refuse(call->params, &bounds,
                                 call->is_leaving && (distance_m <= call->params->leave_length_m));
-        nav_costmap_feedback(call->scene->costmap, pose->x_m, pose->y_m, reason);
+        nav_costmap_feedback(call->scene->costmap, pose, reason);
     }
     else
     {
@@ -528,10 +545,9 @@ static void test_kept(call_t *call, const nav_path_t *kept, test_t *test)
     }
 }
 
-/** Tests what of a path has not been tested before; bounds are the worst of the whole path. */
-static void test_path(call_t *call, nav_tree_t *tree, uint32_t path, test_t *test)
+/** Tests what of a turn and a first arc has not been tested before. */
+static void test_first(call_t *call, nav_tree_t *tree, uint32_t node, test_t *test)
 {
-    const uint32_t node = path / ARCS;
     const uint32_t turn = node / ARCS;
     const nav_arc_t turning = turn_arc(turn);
     const nav_pose2_t turned = nav_arc_pose(&call->start, &turning, 1.0);
@@ -546,11 +562,11 @@ static void test_path(call_t *call, nav_tree_t *tree, uint32_t path, test_t *tes
     }
     test->reason = (nav_reason_t) tree->turn_verdict[turn];
     test->bounds = tree->turn_bounds[turn];
-    walk = tree_walk(call, &turned, node % ARCS);
     if (test->reason == NAV_REASON_NONE)
     {
         if (tree->first_verdict[node] == (uint8_t) NAV_TREE_UNTESTED)
         {
+            walk = tree_walk(call, &turned, node % ARCS);
             test_walk(call, &walk, 0.0, test);
             tree->first_verdict[node] = (uint8_t) test->reason;
             tree->first_bounds[node] = test->bounds;
@@ -558,8 +574,19 @@ static void test_path(call_t *call, nav_tree_t *tree, uint32_t path, test_t *tes
         test->reason = (nav_reason_t) tree->first_verdict[node];
         test->bounds = tree->first_bounds[node];
     }
+}
+
+/** Tests what of a path has not been tested before; bounds are the worst of the whole path. */
+static void test_path(call_t *call, nav_tree_t *tree, uint32_t path, test_t *test)
+{
+    const uint32_t node = path / ARCS;
+
+    test_first(call, tree, node, test);
     if (test->reason == NAV_REASON_NONE)
     {
+        const nav_arc_t turning = turn_arc(node / ARCS);
+        const nav_pose2_t turned = nav_arc_pose(&call->start, &turning, 1.0);
+        walk_t walk = tree_walk(call, &turned, node % ARCS);
         const branch_t first = branch_follow(call, &walk);
         if (!first.is_at_goal)
         {
@@ -617,6 +644,7 @@ static void test_paths(call_t *call, nav_tree_t *tree, nav_select_arc_out_t *out
                 {
                     out->path_index = path;
                     out->bounds = test.bounds;
+                    out->path_cost_s = tree->path_cost_s[path];
                     rest = NAV_REASON_COST;
                 }
                 else if (is_one_path(call))
@@ -638,6 +666,100 @@ static void test_paths(call_t *call, nav_tree_t *tree, nav_select_arc_out_t *out
             }
         }
         out->rejections[tree->path_reason[path]]++;
+    }
+}
+
+/** The cheapest first arc that may still pass; NAV_TREE_FIRST_ARCS when there is none. */
+static uint32_t cheapest_first(const nav_tree_t *tree)
+{
+    uint32_t cheapest = (uint32_t) NAV_TREE_FIRST_ARCS;
+    double least_s = NAV_COST_INFINITE;
+    for (uint32_t node = 0U; node < (uint32_t) NAV_TREE_FIRST_ARCS; node++)
+    {
+        const uint8_t turn = tree->turn_verdict[node / ARCS];
+        const uint8_t first = tree->first_verdict[node];
+        const bool is_refused =
+            ((turn != (uint8_t) NAV_REASON_NONE) && (turn != (uint8_t) NAV_TREE_UNTESTED)) ||
+            ((first != (uint8_t) NAV_REASON_NONE) && (first != (uint8_t) NAV_TREE_UNTESTED));
+        if (!is_refused && (tree->first_cost_s[node] < least_s))
+        {
+            least_s = tree->first_cost_s[node];
+            cheapest = node;
+        }
+    }
+    return cheapest;
+}
+
+/** Takes the cheapest first arc that passes, if one does. */
+static void take_short(call_t *call, nav_tree_t *tree, nav_select_arc_out_t *out)
+{
+    uint32_t node = cheapest_first(tree);
+    bool is_found = false;
+    while ((node < (uint32_t) NAV_TREE_FIRST_ARCS) && !is_found)
+    {
+        test_t test = {NAV_REASON_NONE, best_bounds()};
+        test_first(call, tree, node, &test);
+        is_found = test.reason == NAV_REASON_NONE;
+        if (is_found)
+        {
+            out->path_index = (uint32_t) NAV_TREE_SHORT + node;
+            out->bounds = test.bounds;
+            out->path_cost_s = tree->first_cost_s[node];
+        }
+        else
+        {
+            /* refused now: another one is the cheapest */
+            node = cheapest_first(tree);
+        }
+    }
+}
+
+/** As far backwards as is driven before planning again. */
+static nav_arc_t back_arc(const call_t *call, uint32_t k)
+{
+    const double length_m = call->params->execute_length_m;
+    const double share = length_m / call->params->tree_arc_length_m;
+    const nav_arc_t arc = {-length_m, -share * call->scene->shapes->heading_change_rad[k]};
+    return arc;
+}
+
+/** Takes the cheapest arc backwards that passes, if one does. */
+static void take_back(call_t *call, nav_select_arc_out_t *out)
+{
+    double least_s = NAV_COST_INFINITE;
+    for (uint32_t k = 0U; k < ARCS; k++)
+    {
+        const nav_arc_t arc = back_arc(call, k);
+        const walk_t walk = arc_walk(call, &call->start, &arc);
+        const branch_t leaf = branch_follow(call, &walk);
+        double cost_s = NAV_COST_INFINITE;
+        (void) path_cost(call, steering_s(call, &call->in->steering, &arc), &leaf, &cost_s);
+        if (cost_s < least_s)
+        {
+            test_t test = {NAV_REASON_NONE, best_bounds()};
+            test_walk(call, &walk, 0.0, &test);
+            if (test.reason == NAV_REASON_NONE)
+            {
+                least_s = cost_s;
+                out->path_index = (uint32_t) NAV_TREE_BACK + k;
+                out->bounds = test.bounds;
+                out->path_cost_s = cost_s;
+            }
+        }
+    }
+}
+
+/** Tests all candidates, then, where the mode looks for more than one path, the last resorts. */
+static void test_all(call_t *call, nav_tree_t *tree, nav_select_arc_out_t *out)
+{
+    test_paths(call, tree, out);
+    if ((out->path_index == (uint32_t) NAV_TREE_NONE) && !is_one_path(call))
+    {
+        take_short(call, tree, out);
+    }
+    if ((out->path_index == (uint32_t) NAV_TREE_NONE) && !is_one_path(call))
+    {
+        take_back(call, out);
     }
 }
 
@@ -665,12 +787,26 @@ static double executed_turn_rad(const nav_params_t *params, double turn_rad)
 static nav_path_t selected_path(const call_t *call, const nav_tree_t *tree, uint32_t path)
 {
     nav_path_t selected = tree->kept;
-    if (path != KEPT)
+    if (path >= (uint32_t) NAV_TREE_BACK)
+    {
+        selected = (nav_path_t){.first = back_arc(call, path - (uint32_t) NAV_TREE_BACK)};
+    }
+    else if (path >= (uint32_t) NAV_TREE_SHORT)
+    {
+        const uint32_t node = path - (uint32_t) NAV_TREE_SHORT;
+        selected =
+            (nav_path_t){.turn = turn_arc(node / ARCS), .first = tree_arc(call, node % ARCS)};
+    }
+    else if (path != KEPT)
     {
         const uint32_t node = path / ARCS;
         selected.turn = turn_arc(node / ARCS);
         selected.first = tree_arc(call, node % ARCS);
         selected.second = tree_arc(call, path % ARCS);
+    }
+    else
+    {
+        /* the kept one */
     }
     return selected;
 }
@@ -692,9 +828,10 @@ static nav_arc_t executed_arc(const call_t *call, const nav_path_t *path, const 
     }
     else
     {
-        const double driven_m = path->first.length_m * (double) first->pose_count /
-                                (double) nav_arc_pose_count(call->params, &path->first);
-        arc = arc_front(&path->first, nav_min(call->params->execute_length_m, driven_m));
+        const double share =
+            (double) first->pose_count / (double) nav_arc_pose_count(call->params, &path->first);
+        const double most_m = call->params->execute_length_m;
+        arc = arc_front(&path->first, nav_clamp(path->first.length_m * share, -most_m, most_m));
     }
     return arc;
 }
@@ -756,7 +893,6 @@ static void show_path(const call_t *call, nav_tree_t *tree, nav_select_arc_out_t
     }
     (void) leaf_cost(call, &leaf, &to_go_s);
     out->arc = executed_arc(call, &path, &first);
-    out->path_cost_s = tree->path_cost_s[out->path_index];
     out->cost_to_go_s = to_go_s;
     if (!leaf.is_at_goal && (call->use_terrain_cost || call->use_zone_cost))
     {
@@ -800,24 +936,23 @@ void nav_tree_select(nav_tree_t *tree,
 
     call.budget_end = (uint32_t) call.params->ace_budget_poses;
 
-    out->path_index = (uint32_t) NAV_TREE_CANDIDATES;
+    out->path_index = (uint32_t) NAV_TREE_NONE;
     clear_verdicts(tree);
     rank(&call, tree);
     rank_kept(&call, tree);
     sort_paths(tree, is_kept_sorted(&call, tree) ? call.candidate_count : PATHS);
-    test_paths(&call, tree, out);
-    if ((out->path_index == (uint32_t) NAV_TREE_CANDIDATES) && call.test_terrain &&
-        !is_one_path(&call))
+    test_all(&call, tree, out);
+    if ((out->path_index == (uint32_t) NAV_TREE_NONE) && call.test_terrain && !is_one_path(&call))
     {
         call.is_leaving = true;
         call.budget_end += call.ace_evaluations;
         forget_tests(&call, tree, out);
-        test_paths(&call, tree, out);
-        out->is_leaving = (out->path_index < (uint32_t) NAV_TREE_CANDIDATES) ? 1U : 0U;
+        test_all(&call, tree, out);
+        out->is_leaving = (out->path_index < (uint32_t) NAV_TREE_NONE) ? 1U : 0U;
     }
     out->ace_evaluations = call.ace_evaluations;
     out->status = (uint32_t) NAV_NO_PATH;
-    if (out->path_index < (uint32_t) NAV_TREE_CANDIDATES)
+    if (out->path_index < (uint32_t) NAV_TREE_NONE)
     {
         out->status = (uint32_t) NAV_OK;
         show_path(&call, tree, out);
