@@ -27,11 +27,13 @@ class CalledSafe:
         distance_m: On arcs it called safe.
         distance_leaving_m: On arcs that only the leave limits let pass.
         violations: True limits violated on arcs it called safe.
+        violations_leaving: True limits violated on those that only the leave limits let pass.
     """
 
     distance_m: float
     distance_leaving_m: float
     violations: int
+    violations_leaving: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,14 +48,14 @@ def called_safe(history: History) -> CalledSafe:
     """Return what was driven on arcs that were called safe."""
     truth = history.truth
     metres = {False: 0.0, True: 0.0}
-    violations = 0
+    violations = {False: 0, True: 0}
     for start_s, end_s, passed in _passed_arcs(history):
         driven_m = _distance_m(truth, end_s) - _distance_m(truth, start_s)
         metres[passed.is_leaving] += driven_m
         is_last = end_s >= float(truth["time_s"][-1]) - TIME_TOLERANCE_S
-        if is_last and not passed.is_leaving and history.outcome.outcome == "limit_violation":
-            violations += 1
-    return CalledSafe(metres[False], metres[True], violations)
+        if is_last and history.outcome.outcome == "limit_violation":
+            violations[passed.is_leaving] += 1
+    return CalledSafe(metres[False], metres[True], violations[False], violations[True])
 
 
 def _passed_arcs(history: History) -> Iterator[tuple[float, float, _Passed]]:

@@ -68,6 +68,19 @@ def status_command(folder: Path) -> int:
     return 0
 
 
+@montecarlo.command("report")
+@click.argument("folder", type=FOLDER)
+@click.option("-o", "out", type=FOLDER, required=True, help="PDF file.")
+@click.option("--compare", "reference", type=FOLDER, help="Folder of a campaign to judge it by.")
+def report_command(folder: Path, out: Path, reference: Path | None) -> int:
+    """Write the report of a campaign; with --compare, whether it is better than another one."""
+    from pyharness.report import write_report
+
+    write_report(folder, out, reference)
+    click.echo(f"{out}")
+    return 0
+
+
 def _chosen(workers: int | None, scheduler: str | None) -> "AbstractContextManager[Workers]":
     from pyharness.terrain_set import workers_default
     from pyharness.workers import dask_workers, local_workers

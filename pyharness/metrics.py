@@ -64,6 +64,7 @@ def summarize(history: History) -> dict[str, Any]:
         "distance_called_safe_m": safe.distance_m,
         "distance_leaving_m": safe.distance_leaving_m,
         "violations_called_safe": safe.violations,
+        "violations_leaving": safe.violations_leaving,
         "rejections": rejection_counts(history),
     }
 
