@@ -28,8 +28,8 @@ from sim.terrain_io import write_atomic
 
 TEMPLATE = "report.typ"
 PICTURE_FILE = "overhead.png"
-PICTURE_WIDTH_PX = 1000
-JPEG_QUALITY = 85
+PICTURE_WIDTH_PX = 800
+JPEG_QUALITY = 75
 
 RUN_NAMES = {
     "enav_sim": "enav-sim",
@@ -104,6 +104,7 @@ def material_of(table: DriveTable) -> Material:
     return Material(
         name=campaign.name,
         version=f"{version} ({revision})" if revision else version,
+        when=str(table.run.get("started") or "")[:10],
         axes=campaign.axes,
         drives_expected=campaign.drive_count,
         rows=rows,
@@ -215,6 +216,6 @@ def small_jpeg(path: Path) -> bytes:
             small.save(file, "JPEG", quality=JPEG_QUALITY)
     except (OSError, ValueError, SyntaxError):
         raise HarnessError(
-            f"{path}: not a picture that can be read (removed, it is left out)"
+            f"{path}: cannot be read as a picture (removed, it is left out)"
         ) from None
     return file.getvalue()

@@ -186,7 +186,10 @@ def breakable(text: str) -> str:
 
 def number(value: float | None, digits: int) -> str:
     """Return a number with some decimal places."""
-    return NOTHING if value is None else f"{value:.{digits}f}".replace("-", "\N{MINUS SIGN}")
+    if value is None:
+        return NOTHING
+    text = f"{value:.{digits}f}"
+    return text.replace("-", "\N{MINUS SIGN}" if float(text) else "")
 
 
 def percent(share: float | None, digits: int = 0) -> str:
@@ -197,7 +200,7 @@ def percent(share: float | None, digits: int = 0) -> str:
 def signed(value: float, digits: int) -> str:
     """Return a difference."""
     text = number(value, digits)
-    return text if text.startswith("\N{MINUS SIGN}") or not float(text) else f"+{text}"
+    return f"+{text}" if value > 0.0 and float(text) else text
 
 
 def rate_text(rate: Rate | None) -> str:

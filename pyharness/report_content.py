@@ -43,6 +43,7 @@ class Material:
     Attributes:
         name: Of the campaign.
         version: Of the software, with its revision where there is one.
+        when: Day on which it was begun.
         axes: Values of every axis.
         drives_expected: How many drives the whole campaign has.
         rows: One for every finished drive.
@@ -57,6 +58,7 @@ class Material:
 
     name: str
     version: str
+    when: str
     axes: Mapping[str, Sequence[Any]]
     drives_expected: int
     rows: Sequence[Row]
@@ -125,7 +127,7 @@ def build_report(
     drives = blocks.count_text(len(material.rows), "drive")
     report = Report(
         f"Monte Carlo report: {material.name}",
-        f"{drives} · enav-sim {material.version}",
+        " · ".join(filter(None, [drives, f"enav-sim {material.version}", material.when])),
         f"enav-sim {material.version}",
         content,
     )
@@ -336,6 +338,7 @@ def _results(
         bars = [
             (name.replace("_", " "), causes.main_at_end[name], causes.main_overall[name])
             for name in causes.reasons
+            if causes.main_at_end[name] or causes.main_overall[name]
         ]
         files[f"causes{suffix}.svg"] = figures.cause_figure(bars)
     content += sections.cause_blocks(causes, f"causes{suffix}.svg", suffix)

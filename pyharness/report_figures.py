@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 WIDTH_IN = 6.5
+MARGIN_AXES = (0.08, 0.21, 0.84, 0.68)
 STYLE: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 7.5,
@@ -96,14 +97,17 @@ class Distribution:
 def margin_figure(shown: Distribution) -> bytes:
     """Draw a histogram with its cumulative curve, limits and the extreme value."""
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(WIDTH_IN, 2.0), layout="constrained")
-        axes = figure.add_subplot()
-        widths = np.diff(shown.edges)
-        axes.bar(shown.edges[:-1], shown.counts, widths, align="edge", color=GREY, edgecolor="none")
+        figure = Figure(figsize=(WIDTH_IN, 1.75))
+        axes = figure.add_axes(MARGIN_AXES)
         axes.set_yscale("log")
+        used = shown.counts > 0
+        axes.bar(
+            shown.edges[:-1][used], shown.counts[used], np.diff(shown.edges)[used], align="edge",
+            color=GREY, edgecolor="none",
+        )  # fmt: skip
         largest = max(int(shown.counts.max(initial=1)), 1)
         axes.set_ylim(0.7, largest * 2.0)
-        axes.set_xlim(*_window(shown))
+        axes.set_xlim(*window(shown))
         axes.set_xlabel(shown.title)
         axes.set_ylabel("steps of 1/8 s")
         _draw_cumulative(axes, shown)
@@ -111,7 +115,7 @@ def margin_figure(shown: Distribution) -> bytes:
         return _svg(figure)
 
 
-def _window(shown: Distribution) -> tuple[float, float]:
+def window(shown: Distribution) -> tuple[float, float]:
     """Return what is shown: all that occurred, and the limits."""
     used = np.nonzero(shown.counts)[0]
     values = [line.value for line in shown.limits] + [shown.extreme]

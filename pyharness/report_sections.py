@@ -22,6 +22,7 @@ from pyharness.campaign_statistics import (
     success,
 )
 from pyharness.drive_table import is_success
+from pyharness.metrics import OVERTHINK_EVALUATIONS
 from pyharness.report_blocks import Block, Column, Grid, GridCell, GridRow, Table
 from pyharness.report_names import (
     COLUMNS,
@@ -129,7 +130,8 @@ def _statement(key: VariantKey, name: str, safety: Safety) -> blocks.Text:
 
 
 def _per_km(per_metre: float) -> str:
-    return f"{1000.0 * per_metre:.2g} per km"
+    per_km = 1000.0 * per_metre
+    return f"{blocks.whole(per_km) if per_km >= 10.0 else f'{per_km:.2g}'} per km"
 
 
 def _upper(events: int, distance_m: float) -> str:
@@ -320,7 +322,8 @@ GRID_METRICS = (
     (
         "overthink_rate",
         False,
-        "Mean share of planning cycles with more than 275 ACE evaluations (overthinking)",
+        f"Mean share of planning cycles with more than {OVERTHINK_EVALUATIONS} ACE evaluations"
+        " (overthinking)",
     ),
 )
 

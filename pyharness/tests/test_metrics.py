@@ -71,6 +71,7 @@ def test_the_summary_has_these_keys_in_this_order(history):
         "distance_called_safe_m",
         "distance_leaving_m",
         "violations_called_safe",
+        "violations_leaving",
         "rejections",
     ]
 
