@@ -118,6 +118,7 @@ def build_report(
     within = _among(variants, material.axes)
     if within:
         content.append(blocks.Heading("Planners and parameter sets compared", new_page=True))
+        content.append(blocks.Paragraph(_within_text(variants[0].name, len(within))))
         for item in within:
             content += _judged(item, material.axes)
     for variant in variants:
@@ -214,6 +215,15 @@ def _among(variants: Sequence[_Variant], axes: sections.Axes) -> list[_Judgement
         )
         for other in variants[1:]
     ]
+
+
+def _within_text(first: str, count: int) -> str:
+    if count == 1:
+        return f"The reference is {first}, the first of the campaign."
+    return (
+        f"The reference of each is {first}, the first of the campaign. The tests over all pairs"
+        f" are not corrected for there being {count} of them."
+    )
 
 
 def _comparison(
@@ -460,8 +470,8 @@ def _limits(view: _MarginView, scenarios: Sequence[Scenario]) -> list[figures.Li
         if not isinstance(item.vehicle, str)
     }
     return [
-        *(figures.LimitLine("Navlib", round(value, 3), False) for value in sorted(navlib)),
-        *(figures.LimitLine("fault", round(value, 3), True) for value in sorted(true)),
+        *(figures.LimitLine("Navlib", value, False) for value in sorted(navlib)),
+        *(figures.LimitLine("fault", value, True) for value in sorted(true)),
     ]
 
 

@@ -149,7 +149,7 @@ def _draw_lines(axes: Axes, shown: Distribution) -> None:
         )
         is_first = line.value == places[0]
         axes.annotate(
-            f"{line.name} {line.value:g}", (line.value, 1.0), xycoords=("data", "axes fraction"),
+            f"{line.name} {line.value:.3g}", (line.value, 1.0), xycoords=("data", "axes fraction"),
             xytext=(0, 2), textcoords="offset points", va="bottom", color=color, fontsize=6.5,
             ha="center" if not crowded else "right" if is_first else "left",
         )  # fmt: skip
