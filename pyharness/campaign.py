@@ -64,6 +64,10 @@ def _one_set() -> dict[str, Settings]:
     return {"default": {}}
 
 
+def _holds(outer: str, inner: str) -> bool:
+    return inner == outer or inner.startswith(f"{outer}.")
+
+
 def _seeds_tag(value: object) -> str:
     return "list" if isinstance(value, list | tuple) else "count"
 
@@ -153,6 +157,7 @@ class Campaign(ConfigModel):
             raise ValueError("give several planners, or planners in parameter_sets, not both")
         if self.drive_count > DRIVES_MAX:
             raise ValueError(f"{self.drive_count} drives, expected at most {DRIVES_MAX}")
+        self._check_overlaps()
         for index, wanted in enumerate(self.requirements.success_rate_min):
             for key, values in wanted.where.items():
                 place = f"requirements.success_rate_min.{index}.where.{key}"
@@ -164,6 +169,21 @@ class Campaign(ConfigModel):
                     if value not in self.axes[key]:
                         raise ValueError(f"{place}: {_text(value)} is not a value of that axis")
         return self
+
+    def _check_overlaps(self) -> None:
+        """Refuse keys that would replace the value of an axis."""
+        axes = list(self.axes)
+        others = [(f"axes.{key}", key) for key in axes]
+        for name, settings in self.parameter_sets.items():
+            others += [(f"parameter_sets.{name}.{key}", key) for key in settings]
+        for place, key in others:
+            for axis in axes:
+                if place != f"axes.{axis}" and (_holds(key, axis) or _holds(axis, key)):
+                    raise ValueError(f"{place}: would replace the axis {axis}")
+        for key in self.scenario:
+            for axis in axes:
+                if _holds(axis, key):
+                    raise ValueError(f"scenario.{key}: would be replaced by the axis {axis}")
 
     def _sets_planner(self) -> bool:
         return any("planner" in settings for settings in self.parameter_sets.values())

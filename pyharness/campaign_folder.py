@@ -20,7 +20,7 @@ from pyharness.drive_table import (
     result_text,
 )
 from pyharness.errors import OutputError
-from sim.config import dump_model
+from sim.config import dump_model, load_model
 from sim.terrain_io import write_atomic
 
 LOCK_FILE = ".lock"
@@ -56,12 +56,9 @@ def _others(folder: Path) -> list[Path]:
 
 def _prepare(folder: Path, campaign: Campaign) -> None:
     """Check that the folder is of this campaign; remove what a killed run left half done."""
-    path, text = folder / CAMPAIGN_FILE, dump_model(campaign)
-    if path.exists() and path.read_text("utf-8") != text:
-        raise OutputError(
-            f"{path}: another campaign, or this one with other settings,"
-            " expected the same or an empty folder"
-        )
+    path = folder / CAMPAIGN_FILE
+    if path.exists():
+        _check_same(load_model(path, Campaign), campaign, path)
     for name in (RESULTS_FOLDER, DRIVES_FOLDER):
         (folder / name).mkdir(exist_ok=True)
     for torn in [
@@ -70,8 +67,18 @@ def _prepare(folder: Path, campaign: Campaign) -> None:
         *(folder / DRIVES_FOLDER).glob(f"*{PARTIAL}"),
     ]:
         shutil.rmtree(torn) if torn.is_dir() else torn.unlink()
-    if not path.exists():
-        write_atomic(path, text.encode())
+    write_atomic(path, dump_model(campaign).encode())
+
+
+def _check_same(before: Campaign, campaign: Campaign, path: Path) -> None:
+    """Refuse a campaign with other drives; it may be held against other requirements."""
+    old, new = before.model_dump(), campaign.model_dump()
+    different = [key for key in new if new[key] != old[key] and key != "requirements"]
+    if different:
+        raise OutputError(
+            f"{path}: a campaign with another {', '.join(different)},"
+            " expected the same one or an empty folder"
+        )
 
 
 def land(folder: Path, drive: Drive, place: dict[str, Any], mode: str, result: DriveResult) -> None:

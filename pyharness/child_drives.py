@@ -82,6 +82,7 @@ class Servers:
         Raises:
             StoppedError: `stop` was called.
             OutputError: The disk is full.
+            HarnessError: No drive can be run here.
         """
         server = self._take()
         is_usable = False
@@ -124,7 +125,7 @@ class _Server:
             [sys.executable, "-P", "-m", "pyharness.drive_server"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,  # until it has begun
             env={**os.environ, **ONE_THREAD},
             text=True,
             start_new_session=True,  # Ctrl-C is for the campaign, which then ends this
@@ -152,24 +153,30 @@ class _Server:
         if self._is_stopped:
             raise StoppedError(STOPPED)
         if not line:
-            code = self._process.wait()
-            return (
-                _died(-code)
-                if code < 0
-                else DriveResult(outcome="crashed", detail=f"its supervisor: exit code {code}")
-            )
+            return self._ended()
         answer = json.loads(line)
         return _result(answer["status"], Path(answer["folder"]), task.time_out_s)
+
+    def _ended(self) -> DriveResult:
+        """Return what became of the drive when this process ended instead of answering."""
+        code = self._process.wait()
+        if code < 0:
+            return _died(-code)
+        assert self._process.stderr is not None
+        lines = self._process.stderr.read().strip().splitlines() or [f"exit code {code}"]
+        raise HarnessError(f"no drive can be run: {lines[-1]}")
 
     def stop(self) -> None:
         """Have it kill its drive and end; wait for that."""
         self._is_stopped = True
         assert self._process.stdin is not None
         assert self._process.stdout is not None
+        assert self._process.stderr is not None
         with suppress(OSError):
             self._process.stdin.close()
         self._process.wait()
         self._process.stdout.close()
+        self._process.stderr.close()
 
 
 def _result(status: int | None, folder: Path, time_out_s: float) -> DriveResult:

@@ -14,6 +14,7 @@ import ctypes
 import errno
 import json
 import os
+import re
 import resource
 import select
 import shutil
@@ -33,12 +34,14 @@ PR_SET_PDEATHSIG = 1
 PR_SET_CHILD_SUBREAPER = 36
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 EXIT_NO_ROOM = os.EX_IOERR
+ADDRESS = re.compile("0x[0-9a-f]+")
 
 
 def main() -> None:
     """Serve until nobody is there to ask."""
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    _redirect(1, os.devnull)  # nothing that a planner prints gets among the answers
+    for descriptor in (1, 2):  # nothing that a planner prints gets among the answers
+        _redirect(descriptor, os.devnull)
     _prctl(PR_SET_CHILD_SUBREAPER, 1)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     folder = Path(tempfile.mkdtemp(prefix="enav-drives-"))
@@ -147,7 +150,13 @@ def _drive(request: dict[str, Any], folder: Path) -> None:
     except Exception as error:
         if isinstance(error, OSError) and error.errno in NO_ROOM:
             raise
-        write_result(folder, {"error": repr(error)})
+        write_result(folder, {"error": _described(error)})
+
+
+def _described(error: Exception) -> str:
+    """Return an error as the same text in every run: without addresses and names of this folder."""
+    text = f"{error.strerror}" if isinstance(error, OSError) and error.strerror else f"{error}"
+    return ADDRESS.sub("0x...", " ".join(f"{type(error).__name__}: {text}".split()))
 
 
 def _redirect(descriptor: int, path: str) -> None:

@@ -17,6 +17,7 @@ from pyharness.drive_table import DriveTable
 from pyharness.errors import HarnessError
 from pyharness.provenance import provenance
 from pyharness.records import Outcome
+from pyharness.scenario import drive_info
 from pyharness.tables import Row
 from pyharness.workers import Workers
 from sim.errors import SimError
@@ -40,9 +41,17 @@ def run_campaign(
         HarnessError: The folder cannot be used or written, or the workers are gone.
     """
     with opened_folder(folder, campaign):
+        missing = []
+        for drive in drives_of(campaign):
+            path = drive_table.result_path(folder, drive)
+            if path.exists():
+                on_done(drive_table.read_result(path)[0]["outcome"], False)
+            else:
+                missing.append(drive)
         try:
-            with _run_record(folder, workers) as tick:
-                _run_missing(campaign, folder, workers, on_done, tick)
+            if missing:
+                with _run_record(folder, workers) as tick:
+                    _run_drives(campaign, missing, folder, workers, on_done, tick)
         except BaseException:
             with suppress(HarnessError, SimError):
                 drive_table.write_tables(drive_table.load(folder))
@@ -51,8 +60,9 @@ def run_campaign(
         return table, drive_table.write_tables(table)
 
 
-def _run_missing(
+def _run_drives(
     campaign: Campaign,
+    drives: Sequence[Drive],
     folder: Path,
     workers: Workers,
     on_done: Done,
@@ -70,16 +80,10 @@ def _run_missing(
                 on_done(result.summary["outcome"] if result.summary else result.outcome, True)
                 tick()
 
-    for drive in drives_of(campaign):
-        path = drive_table.result_path(folder, drive)
-        if path.exists():
-            on_done(drive_table.read_result(path)[0]["outcome"], False)
-            continue
+    for drive in drives:
         scenario = scenario_of(campaign, drive)
-        assert scenario.waypoints is not None
-        mode = scenario.waypoints[-1].mode if scenario.waypoints else scenario.arcs[-1].mode
         task = DriveTask(scenario.model_dump_json(), campaign.keep, campaign.time_out_s)
-        running[workers.submit(task)] = (drive, mode)
+        running[workers.submit(task)] = (drive, drive_info(scenario).waypoints[-1].mode)
         take_in(AHEAD_MAX)
     take_in(0)
 

@@ -104,7 +104,7 @@ class _DaskWorkers:
             return future.result()
         except KilledWorker:
             return DriveResult(outcome="killed", detail="every Dask worker that had it died")
-        except CancelledError:
+        except (CancelledError, OSError):
             raise HarnessError(f"{self.address}: the Dask scheduler is gone") from None
 
 
