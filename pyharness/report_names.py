@@ -59,9 +59,9 @@ def variant_of(row: Row) -> VariantKey:
 def variant_text(key: VariantKey, others: Sequence[VariantKey]) -> str:
     """Return the shortest name that tells a planner and parameter set from others."""
     planner, parameter_set = key
-    if len({item[1] for item in others}) <= 1:
+    if len({item[0] for item in others}) == len(others):
         return planner
-    if len({item[0] for item in others}) <= 1:
+    if len({item[1] for item in others}) == len(others):
         return parameter_set
     return f"{planner}, {parameter_set}"
 

@@ -61,8 +61,10 @@ def story(drive_info):
     return Story(drive_info)
 
 
-def safe(distance_m, leaving_m=0.0, violations=0):
-    return CalledSafe(pytest.approx(distance_m), pytest.approx(leaving_m), violations)
+def safe(distance_m, leaving_m=0.0, violations=0, violations_leaving=0):
+    return CalledSafe(
+        pytest.approx(distance_m), pytest.approx(leaving_m), violations, violations_leaving
+    )
 
 
 def test_a_crawl_is_not_called_safe(story):
@@ -105,11 +107,11 @@ def test_a_crawl_after_the_rover_was_set_down_elsewhere_is_not_called_safe(story
     ("selected", "expected"),
     [
         ({}, safe(1.0, 0.0, 1)),
-        ({"is_leaving": 1}, safe(0.0, 1.0, 0)),
+        ({"is_leaving": 1}, safe(0.0, 1.0, 0, 1)),
         ({"mode": Mode.UNGUARDED}, safe(0.0)),
     ],
 )
-def test_a_violation_counts_where_the_arc_was_called_safe(story, selected, expected):
+def test_a_violation_counts_where_the_arc_had_passed(story, selected, expected):
     story.select(0, **selected)
     story.drive(1, 1.0)
     assert story.end("limit_violation") == expected
@@ -125,7 +127,7 @@ def test_a_violation_on_another_arc_does_not_count(story):
 
 
 def test_a_drive_that_never_moved_has_nothing(story):
-    assert story.end("no_path") == CalledSafe(0.0, 0.0, 0)
+    assert story.end("no_path") == CalledSafe(0.0, 0.0, 0, 0)
 
 
 def test_of_a_real_drive_all_but_the_crawl_is_called_safe(quick_drive):
