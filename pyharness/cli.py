@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pyharness.cli_compare import compare
 from pyharness.cli_modes import modes_command
 from pyharness.cli_montecarlo import montecarlo
 from pyharness.cli_records import evaluate_arc_command, replay_command
@@ -63,7 +62,6 @@ def _fail(message: str) -> int:
     return EXIT_BAD_INPUT
 
 
-cli.add_command(compare)
 cli.add_command(terrain)
 cli.add_command(modes_command)
 cli.add_command(montecarlo)

@@ -28,7 +28,7 @@ def montecarlo() -> None:
 @click.option("--workers", type=click.IntRange(1, 1024), help="Drives at a time (one a core).")
 @click.option("--scheduler", metavar="ADDRESS", help="Of a Dask cluster, to run them there.")
 def run_command(name: str, out: Path, workers: int | None, scheduler: str | None) -> int:
-    """Run a campaign: a YAML file, or `standard`, which comes along.
+    """Run a campaign: a YAML file, or `standard` or `planners`, which come along.
 
     Every drive runs in a process of its own. Finished drives are not run again: the same command
     goes on where it was stopped.

@@ -4,7 +4,7 @@
 from importlib import resources
 from pathlib import Path
 
-BUILT_IN = ("standard",)
+BUILT_IN = ("standard", "planners")
 
 
 def built_in(name: str) -> Path:
