@@ -19,7 +19,8 @@ from pyharness.campaign_statistics import Row, known
 from pyharness.drive_table import DRIVES_FOLDER, DriveTable
 from pyharness.errors import HarnessError
 from pyharness.report_blocks import Report
-from pyharness.report_content import Files, Material, build_report, choose_failures
+from pyharness.report_content import Files, Material, build_report
+from pyharness.report_failures import choose_failures
 from pyharness.report_names import VariantKey, axis_title, axis_value, variant_of, variant_text
 from pyharness.report_requirements import requirement_checks
 from pyharness.scenario import Scenario, load_scenario

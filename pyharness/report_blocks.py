@@ -203,13 +203,6 @@ def signed(value: float, digits: int) -> str:
     return f"+{text}" if value > 0.0 and float(text) else text
 
 
-def rate_text(rate: Rate | None) -> str:
-    """Return a rate with its interval."""
-    if rate is None:
-        return NOTHING
-    return f"{percent(rate.share, 1)} ({interval(rate)}; {rate.count} of {rate.total})"
-
-
 def interval(rate: Rate | None) -> str:
     """Return the interval of a rate in per cent."""
     return NOTHING if rate is None else f"{100 * rate.low:.0f} to {100 * rate.high:.0f} %"

@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A whole report from what is known of a campaign: blocks, and the figures they name."""
 
-import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
-
-import numpy as np
 
 from pyharness import report_blocks as blocks
 from pyharness import report_comparison as comparison
@@ -14,23 +11,21 @@ from pyharness import report_figures as figures
 from pyharness import report_sections as sections
 from pyharness.campaign_pairs import Comparison, compare
 from pyharness.campaign_statistics import (
-    Cell,
     Row,
     by_cell,
-    cell_of,
-    in_order,
     no_path_causes,
     outcome_counts,
     safety,
-    violation_place,
 )
-from pyharness.drive_table import is_success
-from pyharness.margins import QUANTITIES, Margins, Quantity, summed
+from pyharness.margins import Margins
 from pyharness.report_blocks import Block, Report
+from pyharness.report_failures import failure_blocks
+from pyharness.report_margins import margin_blocks
 from pyharness.report_names import VariantKey, cell_text, variant_of, variant_text
 from pyharness.scenario import Scenario
 
-PICTURES_MAX = 6
+BARS_MAX = 45
+"""Cells that a figure has room for."""
 
 Files = Mapping[str, bytes]
 """Figures and pictures by the names that the blocks give them."""
@@ -84,12 +79,13 @@ class _Variant:
 
 @dataclass(frozen=True, slots=True)
 class _Judgement:
-    """A comparison with the names of both sides."""
+    """A comparison with the names of both sides, and whose drives they are."""
 
     judged: str
     reference: str
     result: Comparison
     suffix: str
+    keys: tuple[VariantKey, VariantKey]
 
 
 def build_report(
@@ -123,7 +119,8 @@ def build_report(
             content += _judged(item, material.axes)
     for variant in variants:
         content += _results(material, variant, len(variants) > 1, files)
-    content += _failures(material, pictures, files)
+    content.append(blocks.Heading("Chosen failures"))
+    content += failure_blocks(material.rows, material.axes, pictures, material.keep, files)
     content += _appendix(material, variants, [*judgements, *within])
     drives = blocks.count_text(len(material.rows), "drive")
     report = Report(
@@ -171,37 +168,32 @@ def _against(material: Material, reference: Material) -> list[_Judgement]:
     own, other = _variants(material), _variants(reference)
     if set(material.axes) != set(reference.axes):
         return []
-    by_key = {item.key: item for item in other}
+    partners = {item.key: item for item in other}
     if len(own) == len(other) == 1:
-        by_key = {own[0].key: other[0]}
-    result = []
-    for item in own:
-        if item.key in by_key:
-            partner = by_key[item.key]
-            names = _two_names(material, item, reference, partner, len(own) > 1)
-            pairs = compare(partner.rows, item.rows, list(material.axes))
-            result.append(_Judgement(*names, pairs, f"-against{item.suffix}"))
-    return result
+        partners = {own[0].key: other[0]}
+    return [
+        _Judgement(
+            *_two_names(material, item, reference, partners[item.key], len(own) > 1),
+            compare(partners[item.key].rows, item.rows, list(material.axes)),
+            f"-against{item.suffix}",
+            (item.key, partners[item.key].key),
+        )
+        for item in own
+        if item.key in partners
+    ]
 
 
 def _two_names(
-    material: Material, item: _Variant, reference: Material, partner: _Variant, with_variant: bool
+    material: Material, item: _Variant, reference: Material, partner: _Variant, is_one_of_many: bool
 ) -> tuple[str, str]:
     """Return short names of both sides that differ."""
-    if material.name != reference.name:
-        judged, referred = material.name, reference.name
-    elif item.key != partner.key:
-        return " ".join(filter(None, item.key)), " ".join(filter(None, partner.key))
-    else:
-        judged, referred = "this campaign", "the reference"
-    return (
-        (f"{judged}: {item.name}", f"{referred}: {item.name}")
-        if with_variant
-        else (
-            judged,
-            referred,
-        )
-    )
+    if material.name == reference.name and item.key != partner.key:
+        return " ".join(item.key), " ".join(partner.key)
+    names = (material.name, reference.name)
+    judged, referred = names if names[0] != names[1] else ("this campaign", "the reference")
+    if is_one_of_many:
+        return f"{judged}: {item.name}", f"{referred}: {item.name}"
+    return judged, referred
 
 
 def _among(variants: Sequence[_Variant], axes: sections.Axes) -> list[_Judgement]:
@@ -212,6 +204,7 @@ def _among(variants: Sequence[_Variant], axes: sections.Axes) -> list[_Judgement
             variants[0].name,
             compare(variants[0].rows, other.rows, list(axes)),
             f"-within{other.suffix}",
+            (other.key, variants[0].key),
         )
         for other in variants[1:]
     ]
@@ -240,26 +233,41 @@ def _comparison(
     content: list[Block] = []
     for item in judgements:
         content += _judged(item, material.axes)
-    first, other = (
-        next(iter(side.scenarios.values()), [None])[0] for side in (material, reference)
-    )
-    if first is not None and other is not None:
-        differing = _differences(other, first, {*material.axes, *reference.axes})
-        content.append(_settings_between(differing, judgements[0]))
-    return content
+        sides = [
+            side.scenarios.get(key, ())
+            for side, key in zip((material, reference), item.keys, strict=True)
+        ]
+        if all(sides):
+            differing = _differences(sides[1][0], sides[0][0], material.axes)
+            content.append(_settings_between(differing, item))
+    return content + _without_partner(judgements, material, reference)
 
 
-def _settings_between(differing: Sequence[tuple[str, str, str]], names: _Judgement) -> Block:
+def _without_partner(
+    judgements: Sequence[_Judgement], material: Material, reference: Material
+) -> list[Block]:
+    """Name the planners and parameter sets that only one campaign has."""
+    lines = []
+    for side, whose, index in ((material, "this campaign", 0), (reference, "the reference", 1)):
+        compared = {item.keys[index] for item in judgements}
+        alone = [key for key in dict.fromkeys(map(variant_of, side.rows)) if key not in compared]
+        if alone:
+            names = "; ".join(", ".join(key) for key in alone)
+            lines.append(f"Left out, being in {whose} only: {names}.")
+    return [blocks.Callout("note", lines)] if lines else []
+
+
+def _settings_between(differing: Sequence[tuple[str, str, str]], item: _Judgement) -> Block:
     if not differing:
-        return blocks.Paragraph("The settings of both campaigns are the same besides the axes.")
+        return blocks.Paragraph("The settings of both are the same besides the axes.")
     rows = [[blocks.code(name), *map(blocks.breakable, values)] for name, *values in differing]
     return blocks.Table(
-        "tab-settings-between",
-        "Settings in which the two campaigns differ, besides the axes.",
+        f"tab-settings{item.suffix}",
+        "Settings in which the two differ, besides the axes.",
         [
             blocks.Column("setting"),
-            blocks.Column(names.reference, wide=True),
-            blocks.Column(names.judged, wide=True),
+            blocks.Column(item.reference, wide=True),
+            blocks.Column(item.judged, wide=True),
         ],
         rows,
         small=True,
@@ -295,11 +303,13 @@ def _settings(material: Material, variants: Sequence[_Variant]) -> list[tuple[st
 
 
 def _differences(
-    before: Scenario, after: Scenario, left_out: Mapping[str, Any] | set[str]
+    before: Scenario, after: Scenario, axes: sections.Axes
 ) -> list[tuple[str, str, str]]:
-    """Return dotted names and both values of what differs between two drives."""
+    """Return dotted names and both values of what differs between two drives besides axes."""
     old, new = (flattened(item.model_dump(mode="json")) for item in (before, after))
-    unsaid = {"name", "seed", "terrain.seed", *left_out}
+    unsaid = {"name", "seed", "terrain.seed"} | {
+        key for key in [*old, *new] for axis in axes if f"{key}.".startswith(f"{axis}.")
+    }
     return [
         (key, _shown(old.get(key)), _shown(new.get(key)))
         for key in dict.fromkeys([*old, *new])
@@ -353,11 +363,8 @@ def _results(
         files[f"causes{suffix}.svg"] = figures.cause_figure(bars)
     content += sections.cause_blocks(causes, f"causes{suffix}.svg", suffix)
     content.append(blocks.Heading("Margins", level))
-    content += _margins(material, variant, files)
-    return content
-
-
-BARS_MAX = 45
+    limits = material.scenarios.get(variant.key, ())
+    return content + margin_blocks(variant.margins, limits, suffix, files)
 
 
 def _outcomes(
@@ -381,177 +388,6 @@ def _outcomes(
         f"outcomes{suffix}.svg",
     )
     return [blocks.Pictures([picture])]
-
-
-# ------------------------------------------------------------------ margins
-
-
-@dataclass(frozen=True, slots=True)
-class _MarginView:
-    """How a quantity is shown: name, unit, factor from SI, and where its limits stand."""
-
-    name: str
-    unit: str
-    factor: float
-    navlib_limit: str
-    true_limit: str
-    is_true_in_deg: bool
-
-
-_DEG = math.degrees(1.0)
-_MARGIN_VIEWS = {
-    "clearance_m": _MarginView(
-        "belly clearance", "m", 1.0, "clearance_min_m", "clearance_min_m", False
-    ),
-    "wheel_drop_m": _MarginView(
-        "wheel drop", "m", 1.0, "wheel_drop_max_m", "wheel_drop_max_m", False
-    ),
-    "tilt_rad": _MarginView("tilt", "deg", _DEG, "tilt_max_rad", "tilt_max_deg", True),
-    "rocker_rad": _MarginView(
-        "rocker angle", "deg", _DEG, "rocker_max_rad", "rocker_max_deg", True
-    ),
-    "bogie_rad": _MarginView("bogie angle", "deg", _DEG, "bogie_max_rad", "bogie_max_deg", True),
-}
-
-
-def _margins(material: Material, variant: _Variant, files: dict[str, bytes]) -> list[Block]:
-    total = summed(variant.margins)
-    scenarios = material.scenarios.get(variant.key, ())
-    shown = []
-    for name, quantity in QUANTITIES.items():
-        histogram, view = total[name], _MARGIN_VIEWS[name]
-        if histogram.extreme is None:
-            continue
-        file = f"margin-{name}{variant.suffix}.svg"
-        limits = _limits(view, scenarios)
-        word = "least" if quantity.is_least else "largest"
-        files[file] = figures.margin_figure(
-            figures.Distribution(
-                title=f"{view.name}, {view.unit}",
-                unit=view.unit,
-                edges=view.factor * quantity.edges,
-                counts=np.array(histogram.counts),
-                below=histogram.under,
-                above=histogram.over,
-                extreme=view.factor * histogram.extreme,
-                extreme_name=word,
-                limits=limits,
-            )
-        )
-        caption = _margin_caption(view, quantity, histogram.total, view.factor * histogram.extreme)
-        label = f"fig-{name.replace('_', '-')}{variant.suffix}"
-        shown.append(blocks.Picture(label, caption, file))
-    if not shown:
-        return [blocks.Paragraph("No drive has told its margins.")]
-    about = (
-        "Every step of 1/8 s of every drive, the crawl at the start among them; the curve is the"
-        " share of steps up to a value. Dashed: Navlib's limit, which bounds what it predicts;"
-        " solid: the limit of the true rover, beyond which operators would call a fault."
-    )
-    return [blocks.Paragraph(about), *(blocks.Pictures([picture]) for picture in shown)]
-
-
-def _margin_caption(view: _MarginView, quantity: Quantity, total: int, extreme: float) -> str:
-    what = "values, left and right bogie of every step" if quantity.name == "bogie_rad" else "steps"
-    word = "least" if quantity.is_least else "largest"
-    return (
-        f"{view.name.capitalize()} of the true rover, {blocks.whole(total)} {what}; the {word} is"
-        f" {extreme:.3g} {view.unit}."
-    )
-
-
-def _limits(view: _MarginView, scenarios: Sequence[Scenario]) -> list[figures.LimitLine]:
-    """Return all limits that drives were under."""
-    factor = view.factor
-    navlib = {factor * float(getattr(item.navlib, view.navlib_limit)) for item in scenarios}
-    true = {
-        float(getattr(item.vehicle.fault_limits, view.true_limit))
-        for item in scenarios
-        if not isinstance(item.vehicle, str)
-    }
-    return [
-        *(figures.LimitLine("Navlib", value, False) for value in sorted(navlib)),
-        *(figures.LimitLine("fault", value, True) for value in sorted(true)),
-    ]
-
-
-# ------------------------------------------------------------------ chosen failures
-
-
-def choose_failures(
-    rows: Sequence[Row], axes: Sequence[str], has_picture: Callable[[str], bool]
-) -> list[Row]:
-    """Return failures to show: outcome by outcome in turn, each time the lowest cell that is new.
-
-    Violations on arcs called safe come first, then the most frequent outcome. Within an outcome a
-    cell is shown again only when no other is left; within a cell the lowest seed comes first.
-    """
-    failed = [row for row in rows if not is_success(row) and has_picture(str(row["name"]))]
-    frequent = list(outcome_counts(failed))
-    kinds: dict[tuple[int, str], list[Row]] = {}
-    for row in failed:
-        place = violation_place(row)
-        rank = -1 if place == "called safe" else frequent.index(str(row["outcome"]))
-        kinds.setdefault((rank, str(row["outcome"])), []).append(row)
-    queues = [_spread(kinds[key], axes) for key in sorted(kinds)]
-    chosen: list[Row] = []
-    while len(chosen) < PICTURES_MAX and any(queues):
-        for queue in queues:
-            if queue and len(chosen) < PICTURES_MAX:
-                chosen.append(queue.pop(0))
-    return chosen
-
-
-def _spread(rows: Sequence[Row], axes: Sequence[str]) -> list[Row]:
-    """Return rows so that every cell comes once before any comes again."""
-    seen: dict[Cell, int] = {}
-    ranked: list[tuple[int, int, Row]] = []
-    for row in sorted(rows, key=lambda item: in_order(item, axes)):
-        cell = cell_of(row, axes)
-        seen[cell] = seen.get(cell, 0) + 1
-        ranked.append((seen[cell], len(ranked), row))
-    return [row for _, _, row in sorted(ranked, key=lambda item: item[:2])]
-
-
-def _failures(
-    material: Material, pictures: Sequence[tuple[Row, bytes]], files: dict[str, bytes]
-) -> list[Block]:
-    axes = list(material.axes)
-    content: list[Block] = [blocks.Heading("Chosen failures")]
-    if not pictures:
-        missing = (
-            "No drive failed."
-            if all(map(is_success, material.rows))
-            else f"No pictures of failed drives were kept (keep: {material.keep})."
-        )
-        return [*content, blocks.Paragraph(missing)]
-    content.append(
-        blocks.Paragraph(
-            [
-                "Overhead views at the end of drives. Which are shown: violations on arcs called"
-                " safe first, then outcome by outcome in turn, the most frequent one first; of each"
-                f" the lowest cell that is not shown yet, and its lowest seed; {PICTURES_MAX} at"
-                " most. The command is run in the campaign folder.",
-            ]
-        )
-    )
-    shown: list[blocks.Picture] = []
-    for row, jpeg in pictures:
-        name = str(row["name"])
-        files[f"picture-{len(shown)}.jpg"] = jpeg
-        shown.append(
-            blocks.Picture(
-                f"fig-failure-{len(shown)}",
-                [
-                    blocks.strong(str(row["outcome"]).replace("_", " ")),
-                    f"; {cell_text(cell_of(row, axes), axes)}; seed {row['seed']}."
-                    f" {blocks.breakable(str(row['fault_detail']))}. Again: ",
-                    blocks.code(f"enav drive --scenario drives/{name}/scenario.yaml -o ../{name}"),
-                ],
-                f"picture-{len(shown)}.jpg",
-            )
-        )
-    return [*content, blocks.Pictures(shown, across=2)]
 
 
 # ------------------------------------------------------------------ appendix

@@ -76,6 +76,22 @@ def flat_row(outcome="goal_reached", **changes):
     return flat | {f"rejections_{name}": count for name, count in rejections.items()}
 
 
+def rows_of(outcome_of, seeds=3, **changes):
+    """Drives in the four cells of a grid."""
+    return [
+        flat_row(
+            outcome_of(slope, cfa, seed),
+            name=f"slope{slope}-cfa{cfa}-seed{seed:04d}",
+            seed=seed,
+            **{"terrain.slope_deg": slope, "terrain.cfa": cfa},
+            **changes,
+        )
+        for seed in range(seeds)
+        for slope in GRID["terrain.slope_deg"]
+        for cfa in GRID["terrain.cfa"]
+    ]
+
+
 def counted_margins():
     """Histograms of a drive of 100 steps."""
     fields = ["clearance_m", "wheel_drop_m", "tilt_rad", "rocker_rad"]

@@ -4,35 +4,31 @@ from dataclasses import replace
 
 import pytest
 
+from pyharness import report_figures
 from pyharness.margins import NO_MARGINS
 from pyharness.report_content import (
-    PICTURES_MAX,
     Material,
     build_report,
-    choose_failures,
     flattened,
 )
 from pyharness.report_requirements import requirement_checks
 from pyharness.scenario import load_scenario
-from pyharness.tests.campaign_rows import GRID, counted_margins, flat_row, made_campaign
+from pyharness.tests.campaign_rows import (
+    GRID,
+    counted_margins,
+    flat_row,
+    made_campaign,
+    rows_of,
+)
 
 DEFAULTS = load_scenario(None, {})
 
 
-def rows_of(outcome_of, grid=None, seeds=3, **changes):
-    """Drives in the four cells of a grid."""
-    return [
-        flat_row(
-            outcome_of(slope, cfa, seed),
-            name=f"slope{slope}-cfa{cfa}-seed{seed:04d}",
-            seed=seed,
-            **{"terrain.slope_deg": slope, "terrain.cfa": cfa},
-            **changes,
-        )
-        for seed in range(seeds)
-        for slope in (grid or GRID)["terrain.slope_deg"]
-        for cfa in (grid or GRID)["terrain.cfa"]
-    ]
+@pytest.fixture(autouse=True)
+def _no_drawing(monkeypatch):
+    """Figures are drawn in tests of their own."""
+    for name in ("margin_figure", "outcome_figure", "cause_figure"):
+        monkeypatch.setattr(report_figures, name, lambda *_: b"<svg/>")
 
 
 def material(rows, axes=None, **changes):
@@ -200,6 +196,15 @@ def test_settings_that_differ_from_defaults_are_listed():
     assert row == [{"code": "navlib.tilt_max_rad"}, "0.523599", "0.5"]
 
 
+def test_what_an_axis_changes_is_no_setting():
+    changed = load_scenario(None, {"vehicle.belly.height_m": 0.7, "navlib.rocker_max_rad": 0.1})
+    rows = [flat_row(vehicle="high")]
+    known = material(rows, axes={"vehicle": ["high"]}, scenarios={("enav", "default"): [changed]})
+    names = [row[0]["code"] for row in labelled(built(known, None, [])[0], "tab-settings")["rows"]]
+    assert "navlib.rocker_max_rad" in names
+    assert not [name for name in names if name.startswith("vehicle.")]
+
+
 def test_requirements_are_marked():
     rows = rows_of(reached)
     wanted = made_campaign(requirements={"clearance_min_m": 0.5, "wheel_drop_max_m": 0.5})
@@ -233,7 +238,7 @@ def test_two_identical_campaigns_show_no_difference():
     verdict = next(block for block in data["blocks"][2:] if block["kind"] == "callout")
     assert verdict["tone"] == "note"
     assert "No difference shown" in text_of(verdict)
-    assert "The settings of both campaigns are the same" in text_of(data)
+    assert "The settings of both are the same" in text_of(data)
 
 
 def test_what_has_no_partner_is_said():
@@ -245,6 +250,27 @@ def test_other_axes_cannot_be_compared():
     reference = material(rows_of(reached), axes={"terrain.cfa": [0.07, 0.1]})
     data, _ = built(material(rows_of(reached)), reference, [])
     assert "Nothing can be compared: the axes of the reference are others" in text_of(data)
+
+
+def test_settings_that_differ_between_campaigns_are_listed():
+    rows = rows_of(reached)
+    changed = load_scenario(None, {"navlib.tilt_max_rad": 0.5})
+    reference = material(rows, name="old", scenarios={("enav", "default"): [changed]})
+    data, _ = built(material(rows), reference, [])
+    assert labelled(data, "tab-settings-against")["rows"] == [
+        [{"code": "navlib.tilt_max_rad"}, "0.5", "0.523599"]
+    ]
+
+
+def test_planners_of_one_campaign_only_are_named():
+    both = rows_of(reached) + rows_of(reached, planner="gestalt")
+    other = rows_of(reached) + rows_of(reached, planner="rrtsharp")
+    data, _ = built(material(both), material(other), [])
+    assert "Left out, being in this campaign only: gestalt, default." in text_of(data)
+    assert "Left out, being in the reference only: rrtsharp, default." in text_of(data)
+    alone = rows_of(reached, planner="rrtsharp") + rows_of(reached, parameter_set="b")
+    data, _ = built(material(rows_of(reached)), material(alone), [])
+    assert "no planner and parameter set is in both" in text_of(data)
 
 
 def test_two_campaigns_of_one_planner_each_are_compared_whatever_its_name():
@@ -290,29 +316,7 @@ def test_labels_are_used_once():
     assert named == set(files)
 
 
-# ------------------------------------------------------------------ chosen failures
-
-
-def test_failures_are_chosen_by_outcome_in_turn_lowest_cell_and_seed_first():
-    def outcome(slope, cfa, seed):
-        if (slope, cfa, seed) == (10, 0.1, 2):
-            return "limit_violation"
-        return "stuck" if (slope, seed) == (10, 1) else "no_path" if seed else "goal_reached"
-
-    rows = rows_of(outcome)
-    chosen = choose_failures(rows, list(GRID), lambda _: True)
-    assert [row["outcome"] for row in chosen] == [
-        "limit_violation", "no_path", "stuck", "no_path", "stuck", "no_path",
-    ]  # fmt: skip
-    assert [row["name"] for row in chosen if row["outcome"] == "no_path"] == [
-        "slope0-cfa0.07-seed0001", "slope0-cfa0.1-seed0001", "slope10-cfa0.07-seed0002",
-    ]  # fmt: skip
-
-
-def test_only_drives_with_a_picture_are_chosen_and_not_too_many():
-    rows = rows_of(lambda *_: "no_path", seeds=5)
-    assert len(choose_failures(rows, list(GRID), lambda _: True)) == PICTURES_MAX
-    assert choose_failures(rows, list(GRID), lambda _: False) == []
+# ------------------------------------------------------------------ failures, settings
 
 
 def test_a_picture_says_how_to_run_the_drive_again():
