@@ -21,8 +21,9 @@ Text = Run | Sequence[Run]
 Tone = Literal["good", "bad", "note"]
 
 NOTHING = "\N{EN DASH}"
+NAME_WIDTH = 44
+"""Letters of a drive's name for which there is room beside other columns."""
 P_LEAST = 1e-4
-_LONG_WORD = re.compile(r"\S{24}(?=\S)")
 _CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 
 
@@ -151,7 +152,7 @@ class Report:
 
 
 def _printable(value: Any) -> Any:
-    """Replace what no font has, and let long words break."""
+    """Replace what cannot be printed."""
     if isinstance(value, str):
         return _CONTROL.sub("\N{REPLACEMENT CHARACTER}", value.replace("\n", " "))
     if isinstance(value, dict):
@@ -176,9 +177,9 @@ def ref(label: str) -> Run:
     return {"ref": label}
 
 
-def breakable(text: str) -> str:
-    """Let words that are wider than a column be broken."""
-    return _LONG_WORD.sub("\\g<0>\N{ZERO WIDTH SPACE}", text)
+def drive_name(name: str) -> Run:
+    """Return the name of a drive; only one that is very long may break anywhere."""
+    return code(re.sub(rf"\S{{{NAME_WIDTH}}}(?=\S)", "\\g<0>\N{ZERO WIDTH SPACE}", name))
 
 
 # ------------------------------------------------------------------ numbers as text
@@ -221,8 +222,9 @@ def p_text(p: float) -> str:
 
 
 def p_equation(p: float) -> str:
-    """Return a p value as it stands in a sentence."""
-    return f"p {p_text(p)}" if p < P_LEAST else f"p = {p_text(p)}"
+    """Return a p value as it stands in a sentence, on one line."""
+    text = f"p {p_text(p)}" if p < P_LEAST else f"p = {p_text(p)}"
+    return text.replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def whole(value: float) -> str:

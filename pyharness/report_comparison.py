@@ -35,6 +35,17 @@ def comparison_blocks(
     return [*content, _how(result)]
 
 
+HEADING_WIDTH = 24
+"""Letters of a name for which there is room at the head of a column."""
+
+
+def _heads(judged: str, reference: str) -> tuple[str, str]:
+    """Return what stands over the columns of both sides."""
+    if max(len(judged), len(reference)) > HEADING_WIDTH:
+        return "judged", "reference"
+    return judged, reference
+
+
 def _is_shown(test: McNemar) -> bool:
     return test.p < ALPHA
 
@@ -102,6 +113,7 @@ def _p(p: float) -> str:
 
 def _pairs_table(judged: str, reference: str, result: Comparison, suffix: str) -> Table:
     test = result.success
+    judged, reference = _heads(judged, reference)
     return Table(
         f"tab-pairs{suffix}",
         "Pairs of drives in the same cell with the same seed.",
@@ -172,6 +184,7 @@ def _cell_table(result: Comparison, axes: Axes, suffix: str) -> Table:
 def _metrics_table(
     judged: str, reference: str, metrics: Sequence[MetricResult], suffix: str
 ) -> Table:
+    judged, reference = _heads(judged, reference)
     rows = []
     for item in metrics:
         own, shown = item.difference, COLUMNS[item.difference.metric]
@@ -231,6 +244,7 @@ def flipped_blocks(
     """List the pairs of which one drive only reached the goal."""
     if not result.gained and not result.lost:
         return []
+    heads = _heads(judged, reference)
     rows = [
         [word, *axis_numbers(cell_of(pair[1], list(axes)), list(axes)), *_flip(pair)]
         for word, pairs in (("lost", result.lost), ("gained", result.gained))
@@ -245,8 +259,8 @@ def flipped_blocks(
                 Column(""),
                 *cell_columns(axes),
                 Column("seed", right=True),
-                Column(reference),
-                Column(judged),
+                Column(heads[1]),
+                Column(heads[0]),
                 Column("detail of the failure", wide=True),
             ],
             rows,
@@ -258,4 +272,4 @@ def flipped_blocks(
 def _flip(pair: Pair) -> list[str]:
     outcomes = [str(row["outcome"]).replace("_", " ") for row in pair]
     details = [str(row["fault_detail"]) for row in pair if row["fault_detail"]]
-    return [str(pair[1]["seed"]), *outcomes, blocks.breakable("; ".join(details))]
+    return [str(pair[1]["seed"]), *outcomes, "; ".join(details)]

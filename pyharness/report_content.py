@@ -260,7 +260,7 @@ def _without_partner(
 def _settings_between(differing: Sequence[tuple[str, str, str]], item: _Judgement) -> Block:
     if not differing:
         return blocks.Paragraph("The settings of both are the same besides the axes.")
-    rows = [[blocks.code(name), *map(blocks.breakable, values)] for name, *values in differing]
+    rows = [[blocks.code(name), *values] for name, *values in differing]
     return blocks.Table(
         f"tab-settings{item.suffix}",
         "Settings in which the two differ, besides the axes.",

@@ -94,7 +94,7 @@ def failure_blocks(
 
 def _caption(row: Row, axes: Axes, whose: str) -> blocks.Text:
     name, place = str(row["name"]), cell_text(cell_of(row, list(axes)), list(axes))
-    detail = blocks.breakable(str(row["fault_detail"] or blocks.NOTHING))
+    detail = str(row["fault_detail"] or blocks.NOTHING)
     return [
         blocks.strong(str(row["outcome"]).replace("_", " ")),
         f"{whose}; {place}; seed {row['seed']}. {detail}. Again: ",

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sections of a report on one campaign: numbers in, blocks out."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,6 +36,7 @@ from pyharness.report_names import (
 from pyharness.status import Reason, reason_text
 
 Axes = Mapping[str, Sequence[Any]]
+
 
 # ------------------------------------------------------------------ safety
 
@@ -107,8 +108,12 @@ def safety_blocks(found: Sequence[tuple[VariantKey, str, Safety]]) -> list[Block
                 "tab-violations",
                 "Every true limit violation on an arc that had passed; those elsewhere stand among"
                 " the failed drives in the appendix.",
-                [Column("drive"), Column("arc"), Column("detail", wide=True)],
-                [[blocks.code(str(row["name"])), kind, _detail(row)] for kind, row in listed],
+                [
+                    _drive_column(row for _, row in listed),
+                    Column("arc"),
+                    Column("detail", wide=True),
+                ],
+                [[blocks.drive_name(str(row["name"])), kind, _detail(row)] for kind, row in listed],
                 small=True,
             )
         )
@@ -144,8 +149,13 @@ def _marked(text: str, tone: blocks.Tone) -> dict[str, str]:
     return {"text": text, "tone": tone}
 
 
+def _drive_column(rows: Iterable[Row]) -> Column:
+    """Return the column of names, which share the room with the details where they are long."""
+    return Column("drive", wide=any(len(str(row["name"])) > blocks.NAME_WIDTH for row in rows))
+
+
 def _detail(row: Row) -> str:
-    return blocks.breakable(str(row["fault_detail"] or blocks.NOTHING))
+    return str(row["fault_detail"] or blocks.NOTHING)
 
 
 # ------------------------------------------------------------------ requirements
@@ -217,10 +227,7 @@ def run_blocks(
     ]
     if settings:
         columns = [Column("setting"), Column("default", wide=True), Column("here", wide=True)]
-        rows = [
-            [blocks.code(name), blocks.breakable(default), blocks.breakable(here)]
-            for name, default, here in settings
-        ]
+        rows = [[blocks.code(name), default, here] for name, default, here in settings]
         caption = "Settings that differ from the defaults of a drive, besides the axes."
         result.append(Table("tab-settings", caption, columns, rows, small=True))
     else:
@@ -230,7 +237,7 @@ def run_blocks(
 
 def _pairs(label: str, caption: str, rows: Sequence[tuple[str, str]]) -> Table:
     columns = [Column("item"), Column("value", wide=True)]
-    return Table(label, caption, columns, [[name, blocks.breakable(text)] for name, text in rows])
+    return Table(label, caption, columns, [[name, text] for name, text in rows])
 
 
 # ------------------------------------------------------------------ results by cell
@@ -547,9 +554,9 @@ def failed_blocks(rows: Sequence[Row], axes: Axes) -> list[Block]:
         Table(
             "tab-failed",
             "Every drive that did not reach its goal.",
-            [Column("drive"), Column("outcome"), Column("detail", wide=True)],
+            [_drive_column(failed), Column("outcome"), Column("detail", wide=True)],
             [
-                [blocks.code(str(row["name"])), _spaced(str(row["outcome"])), _detail(row)]
+                [blocks.drive_name(str(row["name"])), _spaced(str(row["outcome"])), _detail(row)]
                 for row in failed
             ],
             small=True,

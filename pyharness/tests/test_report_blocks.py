@@ -18,19 +18,11 @@ def test_control_characters_do_not_reach_the_template():
     assert data["title"] == "a\N{REPLACEMENT CHARACTER}b c"
 
 
-def test_long_words_can_be_broken():
-    text = blocks.breakable(f"{'x' * 30} short")
-    assert text.replace("\N{ZERO WIDTH SPACE}", "") == f"{'x' * 30} short"
-    assert (
-        max(map(len, text.replace(" ", "\N{ZERO WIDTH SPACE}").split("\N{ZERO WIDTH SPACE}"))) == 24
-    )
-
-
 @pytest.mark.parametrize(
     ("p", "text"), [(0.5, "p = 0.50"), (0.0123, "p = 0.0123"), (1e-9, "p < 0.0001")]
 )
 def test_p_values_are_never_written_as_zero(p, text):
-    assert blocks.p_equation(p) == text
+    assert blocks.p_equation(p).replace("\N{NO-BREAK SPACE}", " ") == text
 
 
 def test_numbers_as_text():

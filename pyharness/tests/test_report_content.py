@@ -70,7 +70,8 @@ def labelled(data, label):
 
 
 def text_of(data):
-    return json.dumps(data, ensure_ascii=False).replace("\N{NARROW NO-BREAK SPACE}", " ")
+    text = json.dumps(data, ensure_ascii=False)
+    return text.replace("\N{NARROW NO-BREAK SPACE}", " ").replace("\N{NO-BREAK SPACE}", " ")
 
 
 def test_safety_comes_first_and_says_metres_and_violations():
