@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
+from pathlib import Path
 
 import pytest
 
@@ -187,3 +188,9 @@ def test_a_campaign_is_written_with_all_defaults_and_read_back(tmp_path):
     one = read(tmp_path, HEAD)
     assert parse_model(dump_model(one), "again", Campaign) == one
     assert "time_out_s: 600.0" in dump_model(one)
+
+
+def test_the_campaign_of_the_documentation_is_one(tmp_path):
+    page = (Path(__file__).parents[2] / "docs/montecarlo.md").read_text("utf-8")
+    text = page.partition("```yaml\n")[2].partition("```")[0]
+    assert read(tmp_path, text).name == "low-clearance"

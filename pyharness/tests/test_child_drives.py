@@ -15,7 +15,7 @@ from pyharness.scenario import load_scenario
 from pyharness.tests.campaign_runs import descendants, is_alive, stub, told_pids, until
 from pyharness.tests.quick_drive import QUICK_DRIVE
 
-pytestmark = pytest.mark.faults
+pytestmark = [pytest.mark.faults, pytest.mark.slow]
 
 
 @pytest.fixture
