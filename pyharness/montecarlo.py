@@ -93,9 +93,12 @@ def _run_record(folder: Path, workers: Workers) -> Iterator[Callable[[], None]]:
     before = read_run(folder)
     start_s = time.monotonic()
     now = _now()
+    source = provenance()
+    version = " ".join(filter(None, (source["enav_sim"], source["revision"])))
     run = {
-        **provenance(),
+        **source,
         **workers.about,
+        "versions": list(dict.fromkeys([*before.get("versions", []), version])),
         "started": before.get("started", now),
         "ended": None,
         "wall_time_s": 0.0,

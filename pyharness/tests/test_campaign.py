@@ -89,7 +89,8 @@ def test_relative_names_of_files_start_at_the_folder_of_the_campaign(tmp_path):
     (drive,) = drives_of(one)
     assert drive.planner == "mine.py:Mine"
     assert scenario_of(one, drive).planner == f"{tmp_path}/mine.py:Mine"
-    again = parse_model(dump_model(one), "again", Campaign)
+    again = read(tmp_path, dump_model(one))
+    assert again == one
     assert scenario_of(again, drive).planner == f"{tmp_path}/mine.py:Mine"
 
 
@@ -182,6 +183,11 @@ def test_every_cell_is_checked_and_all_faults_are_told(tmp_path):
 def test_a_name_that_is_nothing_is_one_line(tmp_path):
     with pytest.raises(ConfigError, match="no such file, expected a campaign's file or one of"):
         load_campaign(str(tmp_path / "standart"))
+
+
+def test_a_campaign_that_comes_along_is_the_same_when_it_is_read_from_its_folder(tmp_path):
+    one = load_campaign("standard")
+    assert read(tmp_path, dump_model(one)) == one
 
 
 def test_a_campaign_is_written_with_all_defaults_and_read_back(tmp_path):

@@ -71,7 +71,7 @@ def test_the_record_of_the_run_says_with_what_and_how_long(undisturbed):
     assert record["sessions"] == 1
     assert record["started"] <= record["ended"]
     assert record["wall_time_s"] > 0.0
-    assert record["enav_sim"]
+    assert record["versions"] == [f"{record['enav_sim']} {record['revision']}"]
 
 
 @pytest.mark.faults
