@@ -258,7 +258,7 @@ def load_campaign(name: str) -> Campaign:
                 [f"{path}: no such file, expected a campaign's file or one of {known}"]
             )
     campaign = load_model(path, Campaign)
-    if campaign.folder is None:
+    if "folder" not in campaign.model_fields_set:
         campaign = campaign.model_copy(update={"folder": folder})
     places = read_tree(path.read_text("utf-8-sig"), str(path)).places
     _check_drives(campaign, path, places)

@@ -11,7 +11,7 @@ import signal
 import subprocess
 import sys
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -22,9 +22,8 @@ from pyharness.errors import HarnessError, OutputError
 ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS"), "1"
 )
+SIGNAL_NAMES = {number.value: number.name for number in signal.Signals}
 BY_HAND = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
-
-
 STOPPED = "the campaign was stopped"
 
 
@@ -139,13 +138,8 @@ class _Server:
     def run(self, task: DriveTask) -> DriveResult:
         assert self._process.stdin is not None
         assert self._process.stdout is not None
-        request = {
-            "scenario": task.scenario,
-            "keep": task.keep,
-            "time_out_s": task.time_out_s,
-        }
         try:
-            self._process.stdin.write(json.dumps(request) + "\n")
+            self._process.stdin.write(json.dumps(asdict(task)) + "\n")
             self._process.stdin.flush()
             line = self._process.stdout.readline()
         except (OSError, ValueError):  # it has ended, or the pipe was closed by `stop`
@@ -202,7 +196,5 @@ def _result(status: int | None, folder: Path, time_out_s: float) -> DriveResult:
 
 def _died(number: int) -> DriveResult:
     """Return what became of a drive that a signal ended."""
-    name = signal.Signals(number).name
-    return DriveResult(
-        outcome="killed" if number in BY_HAND else "crashed", detail=f"signal {name}"
-    )
+    outcome = "killed" if number in BY_HAND else "crashed"
+    return DriveResult(outcome=outcome, detail=f"signal {SIGNAL_NAMES.get(number, number)}")

@@ -48,6 +48,8 @@ def run_command(name: str, out: Path, workers: int | None, scheduler: str | None
             click.echo(f"enav: {progress.text}; the same command goes on from there", err=True)
             raise
         except (HarnessError, SimError) as error:
+            if not progress.has_run:
+                raise
             raise HarnessError(f"{error}; {progress.text}, the same command goes on") from error
     if not has_parquet:
         click.echo("enav: no drives.parquet: it needs the extra `export`", err=True)
@@ -134,6 +136,11 @@ class _Progress:
     def text(self) -> str:
         """How many are done."""
         return f"{self._done} of {self._total} drives are done"
+
+    @property
+    def has_run(self) -> bool:
+        """Whether a drive was run now."""
+        return self._new > 0
 
     def show(self, outcome: str, is_new: bool) -> None:
         """Count one drive."""

@@ -39,12 +39,12 @@ ADDRESS = re.compile("0x[0-9a-f]+")
 
 def main() -> None:
     """Serve until nobody is there to ask."""
-    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    for descriptor in (1, 2):  # nothing that a planner prints gets among the answers
-        _redirect(descriptor, os.devnull)
     _prctl(PR_SET_CHILD_SUBREAPER, 1)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     folder = Path(tempfile.mkdtemp(prefix="enav-drives-"))
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    for descriptor in (1, 2):  # nothing that a planner prints gets among the answers
+        _redirect(descriptor, os.devnull)
     try:
         while line := sys.stdin.readline():
             _empty(folder)
@@ -107,6 +107,8 @@ def _kill_group(pid: int) -> None:
 def _kill_orphans() -> None:
     """Kill what has left the group of its drive; whoever dies may leave orphans in turn."""
     children = Path(f"/proc/self/task/{os.getpid()}/children")
+    if not children.exists():  # a kernel without this list
+        return
     while pids := [int(number) for number in children.read_text().split()]:
         for pid in pids:
             _kill_group(pid)

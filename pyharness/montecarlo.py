@@ -7,7 +7,6 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
 
 from pyharness import drive_table
 from pyharness.campaign import Campaign, Drive, drives_of, scenario_of
@@ -94,9 +93,12 @@ def _run_record(folder: Path, workers: Workers) -> Iterator[Callable[[], None]]:
     before = read_run(folder)
     start_s = time.monotonic()
     now = _now()
+    source = provenance()
+    version = " ".join(filter(None, (source["enav_sim"], source["revision"])))
     run = {
-        **provenance(),
+        **source,
         **workers.about,
+        "versions": list(dict.fromkeys([*before.get("versions", []), version])),
         "started": before.get("started", now),
         "ended": None,
         "wall_time_s": 0.0,
@@ -134,30 +136,21 @@ def _now() -> str:
 
 def status_rows(table: DriveTable) -> list[Row]:
     """Return one row per cell and one for all: drives done and missing, and their outcomes."""
-    campaign = table.campaign
-    keys = campaign.place_columns[1:-1]
-    seeds = len(campaign.seed_list)
-    cells: dict[tuple[str, ...], list[str]] = {}
-    for drive in drives_of(campaign):
-        if len(cells) and drive.seed != campaign.seed_list[0]:
-            break
-        cells[tuple(map(str, drive.cell))] = []
-    for row in table.rows:
-        cells[tuple(str(row[key]) for key in keys)].append(row["outcome"])
+    keys = table.campaign.place_columns[1:-1]
+    found = {row["name"]: row["outcome"] for row in table.rows}
+    cells: dict[tuple[str, ...], list[str | None]] = {}
+    for drive in drives_of(table.campaign):
+        cells.setdefault(tuple(map(str, drive.cell)), []).append(found.get(drive.name))
     everything = [outcome for outcomes in cells.values() for outcome in outcomes]
-    names = sorted(set(everything), key=lambda name: (not _is_success(name), name))
-    rows = [
-        dict(zip(keys, cell, strict=True)) | _counts(outcomes, seeds, names)
-        for cell, outcomes in cells.items()
-    ]
-    total = dict.fromkeys(keys, "all") | _counts(everything, seeds * len(cells), names)
-    return [*rows, total]
+    names = sorted(set(found.values()), key=lambda name: (not Outcome(name).is_reached, name))
+    rows = [_status_row(keys, cell, outcomes, names) for cell, outcomes in cells.items()]
+    return [*rows, _status_row(keys, ["all"] * len(keys), everything, names)]
 
 
-def _counts(outcomes: Sequence[str], wanted: int, names: Sequence[str]) -> dict[str, Any]:
+def _status_row(
+    keys: Sequence[str], cell: Sequence[str], outcomes: Sequence[str | None], names: Sequence[str]
+) -> Row:
+    missing = outcomes.count(None)
     counts = {name: outcomes.count(name) for name in names}
-    return {"done": len(outcomes), "missing": wanted - len(outcomes), **counts}
-
-
-def _is_success(outcome: str) -> bool:
-    return Outcome(outcome).is_reached
+    place = zip(keys, cell, strict=True)
+    return {**dict(place), "done": len(outcomes) - missing, "missing": missing, **counts}

@@ -95,7 +95,10 @@ class _DaskWorkers:
         return {"workers": self.count, "scheduler": self.address}
 
     def submit(self, task: DriveTask) -> Future[DriveResult]:
-        return self.executor.submit(run_on_worker, task)
+        try:
+            return self.executor.submit(run_on_worker, task)
+        except (RuntimeError, OSError):
+            raise self._gone() from None
 
     def result(self, future: Future[DriveResult]) -> DriveResult:
         from distributed import KilledWorker
@@ -105,7 +108,10 @@ class _DaskWorkers:
         except KilledWorker:
             return DriveResult(outcome="killed", detail="every Dask worker that had it died")
         except (CancelledError, OSError):
-            raise HarnessError(f"{self.address}: the Dask scheduler is gone") from None
+            raise self._gone() from None
+
+    def _gone(self) -> HarnessError:
+        return HarnessError(f"{self.address}: the Dask scheduler is gone")
 
 
 @contextmanager

@@ -19,6 +19,7 @@ QUICK_CAMPAIGN = {
     "scenario": QUICK_DRIVE,
     "axes": {"terrain.slope_deg": [0, 5], "terrain.cfa": [0.03, 0.15]},
     "seeds": 3,
+    "keep": "none",
 }
 WAIT_S = 60.0
 

@@ -32,6 +32,11 @@ class Segfault(Enav):
         os.kill(os.getpid(), signal.SIGSEGV)
 
 
+class RealTimeSignal(Enav):
+    def _analyze_terrain(self, request):  # noqa: ARG002
+        os.kill(os.getpid(), 40)
+
+
 class Exits(Enav):
     def _analyze_terrain(self, request):  # noqa: ARG002
         os._exit(7)

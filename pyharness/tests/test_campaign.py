@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
+from pathlib import Path
 
 import pytest
 
@@ -88,7 +89,8 @@ def test_relative_names_of_files_start_at_the_folder_of_the_campaign(tmp_path):
     (drive,) = drives_of(one)
     assert drive.planner == "mine.py:Mine"
     assert scenario_of(one, drive).planner == f"{tmp_path}/mine.py:Mine"
-    again = parse_model(dump_model(one), "again", Campaign)
+    again = read(tmp_path, dump_model(one))
+    assert again == one
     assert scenario_of(again, drive).planner == f"{tmp_path}/mine.py:Mine"
 
 
@@ -183,7 +185,18 @@ def test_a_name_that_is_nothing_is_one_line(tmp_path):
         load_campaign(str(tmp_path / "standart"))
 
 
+def test_a_campaign_that_comes_along_is_the_same_when_it_is_read_from_its_folder(tmp_path):
+    one = load_campaign("standard")
+    assert read(tmp_path, dump_model(one)) == one
+
+
 def test_a_campaign_is_written_with_all_defaults_and_read_back(tmp_path):
     one = read(tmp_path, HEAD)
     assert parse_model(dump_model(one), "again", Campaign) == one
     assert "time_out_s: 600.0" in dump_model(one)
+
+
+def test_the_campaign_of_the_documentation_is_one(tmp_path):
+    page = (Path(__file__).parents[2] / "docs/montecarlo.md").read_text("utf-8")
+    text = page.partition("```yaml\n")[2].partition("```")[0]
+    assert read(tmp_path, text).name == "low-clearance"

@@ -15,7 +15,7 @@ from pyharness.scenario import load_scenario
 from pyharness.tests.campaign_runs import descendants, is_alive, stub, told_pids, until
 from pyharness.tests.quick_drive import QUICK_DRIVE
 
-pytestmark = pytest.mark.faults
+pytestmark = [pytest.mark.faults, pytest.mark.slow]
 
 
 @pytest.fixture
@@ -81,6 +81,7 @@ def test_of_a_failure_all_but_the_large_files_is_kept(servers):
     [
         ("Killed", "killed", "signal SIGKILL"),
         ("Segfault", "crashed", "signal SIGSEGV"),
+        ("RealTimeSignal", "crashed", "signal 40"),
         ("Exits", "crashed", "exit code 7"),
         ("CannotStart", "crashed", "ValueError: <object object at 0x...> is not what it was"),
     ],

@@ -2,6 +2,8 @@
 import builtins
 import csv
 import json
+import re
+from pathlib import Path
 
 import pytest
 
@@ -124,3 +126,10 @@ def test_a_damaged_result_is_one_line(folder, text):
     with pytest.raises(HarnessError, match="not the result of a drive") as error:
         drive_table.load(folder)
     assert path.name in str(error.value)
+
+
+def test_the_documentation_names_every_column():
+    page = (Path(__file__).parents[2] / "docs/montecarlo.md").read_text("utf-8")
+    named = set(re.findall(r"`(\w+)`", page.partition("| column |")[2].partition("\n\n")[0]))
+    columns = {name for name in drive_table.SUMMARY_COLUMNS if not name.startswith("rejections_")}
+    assert named >= columns

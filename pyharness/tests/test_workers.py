@@ -102,7 +102,9 @@ def test_drives_on_a_cluster_crash_hang_and_are_kept_as_on_one_machine(tmp_path,
         "hang": {"planner": stub(tmp_path, "Hangs")},
         "short": {"executive.time_limit_s": 20.0},
     }
-    name = write_campaign(tmp_path, axes={}, parameter_sets=sets, seeds=1, time_out_s=8.0)
+    name = write_campaign(
+        tmp_path, axes={}, parameter_sets=sets, seeds=1, time_out_s=8.0, keep="failures"
+    )
     with dask_workers(cluster.address) as pool:
         table, _ = run_campaign(load_campaign(name), tmp_path / "out", pool, lambda *_: None)
     assert [row["outcome"] for row in table.rows] == ["killed", "timed_out", "time_limit"]
