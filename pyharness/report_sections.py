@@ -248,9 +248,15 @@ def cell_columns(axes: Axes) -> list[Column]:
     return [Column(title) for title in axis_titles(list(axes))]
 
 
-def all_cells(axes: Axes) -> list[blocks.Run]:
-    """Return what stands in them for all cells together."""
-    return [blocks.strong("all"), *[""] * (len(axes) - 1)] if axes else []
+def _cells_and_all(rows: Sequence[Row], axes: Axes) -> list[tuple[list[Any], Sequence[Row]]]:
+    """Return the drives of every cell, and all of them, with what stands in these columns."""
+    names = list(axes)
+    cells = by_cell(rows, names) if names else {}
+    named: list[tuple[list[Any], Sequence[Row]]] = [
+        (list(axis_numbers(cell, names)), own) for cell, own in cells.items()
+    ]
+    everything = [blocks.strong("all"), *[""] * (len(names) - 1)] if names else []
+    return [*named, (everything, rows)]
 
 
 Shade = Callable[[float], str]
@@ -403,14 +409,10 @@ def _mean_of(rows: Sequence[Row], column: str) -> str:
 def outcome_table(rows: Sequence[Row], axes: Axes, suffix: str) -> Table:
     """Return drives of every cell by outcome."""
     names = list(outcome_counts(rows))
-    table_rows: list[list[Any]] = []
-    for cell, own in by_cell(rows, list(axes)).items():
+    table_rows = []
+    for place, own in _cells_and_all(rows, axes):
         counts = outcome_counts(own)
-        table_rows.append(
-            [*axis_numbers(cell, list(axes)), *(str(counts.get(name, "")) for name in names)]
-        )
-    counts = outcome_counts(rows)
-    table_rows.append([*all_cells(axes), *(blocks.strong(str(counts[name])) for name in names)])
+        table_rows.append([*place, *(str(counts.get(name, "")) for name in names)])
     columns = [*cell_columns(axes), *(Column(_spaced(name), right=True) for name in names)]
     caption = "Drives by outcome and cell."
     return Table(f"tab-outcomes{suffix}", caption, columns, table_rows, small=True)
@@ -526,13 +528,9 @@ def _all_means(
         values = [float(row[column]) for row in own if row.get(column) is not None]
         return _mean_of(own, column) + (extra((column, values)) if values else "")
 
-    cells: list[tuple[list[Any], Sequence[Row]]] = [
-        (list(axis_numbers(cell, list(axes))), own)
-        for cell, own in by_cell(rows, list(axes)).items()
-    ]
     table_rows = [
         [*place, f"{sum(map(is_success, own))}/{len(own)}", *(text(own, name) for name in metrics)]
-        for place, own in [*cells, (all_cells(axes), rows)]
+        for place, own in _cells_and_all(rows, axes)
     ]
     columns = [*cell_columns(axes), Column("reached", right=True)]
     columns += [Column(_short(COLUMNS[name]), right=True) for name in metrics]

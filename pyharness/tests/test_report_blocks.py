@@ -57,3 +57,10 @@ def test_a_loss_is_orange_and_a_gain_blue():
 def test_equal_values_lie_in_the_middle():
     assert blocks.scaled(3.0, [3.0, 3.0]) == 0.5
     assert blocks.scaled(3.0, [3.0, 5.0]) == 0.0
+
+
+def test_names_of_drives_stay_as_they_are_typed_unless_they_are_very_long():
+    name = "slope_deg20-cfa0.15-seed0059"
+    assert blocks.drive_name(name) == {"code": name}
+    parts = blocks.drive_name("x" * 100)["code"].split("\N{ZERO WIDTH SPACE}")
+    assert [len(part) for part in parts] == [44, 44, 12]
