@@ -105,6 +105,7 @@ def material_of(table: DriveTable) -> Material:
     return Material(
         name=campaign.name,
         version=f"{version} ({revision})" if revision else version,
+        versions=table.run.get("versions", []),
         when=str(table.run.get("started") or "")[:10],
         axes=campaign.axes,
         drives_expected=campaign.drive_count,
@@ -180,6 +181,8 @@ def _about_run(run: Mapping[str, Any], rows: Sequence[Row]) -> list[tuple[str, s
 def _run_text(name: str, value: Any) -> str:
     if name.endswith("_s") and isinstance(value, int | float):
         return _duration_text(float(value))
+    if isinstance(value, list):
+        return ", ".join(map(str, value))
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
 
 

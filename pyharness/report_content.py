@@ -37,7 +37,8 @@ class Material:
 
     Attributes:
         name: Of the campaign.
-        version: Of the software, with its revision where there is one.
+        version: Of the software that ran last, with its revision where there is one.
+        versions: All that drives were made with, as far as they are known.
         when: Day on which it was begun.
         axes: Values of every axis.
         drives_expected: How many drives the whole campaign has.
@@ -53,6 +54,7 @@ class Material:
 
     name: str
     version: str
+    versions: Sequence[str]
     when: str
     axes: Mapping[str, Sequence[Any]]
     drives_expected: int
@@ -100,7 +102,7 @@ def build_report(
     """
     variants = _variants(material)
     files: dict[str, bytes] = {}
-    content: list[Block] = list(_incomplete(material))
+    content: list[Block] = [*_incomplete(material), *_mixed(material)]
     found = [(item.key, item.name, safety(item.rows)) for item in variants]
     content += sections.safety_blocks(found)
     judgements = _against(material, reference) if reference is not None else []
@@ -158,6 +160,15 @@ def _incomplete(material: Material) -> list[Block]:
         " finished. All that follows is about these."
     )
     return [blocks.Callout("bad", [blocks.strong(text)])]
+
+
+def _mixed(material: Material) -> list[Block]:
+    if len(material.versions) <= 1:
+        return []
+    text = (
+        f"Made with {len(material.versions)} versions of enav-sim: {', '.join(material.versions)}."
+    )
+    return [blocks.Callout("note", [blocks.strong(text)])]
 
 
 # ------------------------------------------------------------------ comparisons

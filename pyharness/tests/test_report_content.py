@@ -36,6 +36,7 @@ def material(rows, axes=None, **changes):
     values = {
         "name": "made",
         "version": "0.1.0",
+        "versions": ["0.1.0 abc"],
         "when": "2026-01-02",
         "axes": GRID if axes is None else axes,
         "drives_expected": len(rows),
@@ -123,6 +124,11 @@ def test_success_on_the_grid_has_interval_and_count():
     assert [row["title"] for row in grid["rows"]] == ["0 deg", "10 deg"]
     cell = grid["rows"][1]["cells"][0]
     assert (cell["main"], cell["sub"]) == ("67 %", "21 to 94 % · 2/3")
+
+
+def test_drives_of_several_versions_are_told_first():
+    data, _ = built(material(rows_of(reached), versions=["0.1.0 abc", "0.1.0 abd"]), None, [])
+    assert "Made with 2 versions of enav-sim: 0.1.0 abc, 0.1.0 abd." in text_of(data["blocks"][0])
 
 
 def test_a_cell_without_drives_is_empty():
@@ -275,10 +281,17 @@ def test_planners_of_one_campaign_only_are_named():
 
 
 def test_two_campaigns_of_one_planner_each_are_compared_whatever_its_name():
-    data, _ = built(
-        material(rows_of(reached)), material(rows_of(reached, planner="gestalt"), name="other"), []
+    changed = load_scenario(None, {"planner": "gestalt"})
+    other = material(
+        rows_of(reached, planner="gestalt"),
+        name="other",
+        scenarios={("gestalt", "default"): [changed]},
     )
+    data, _ = built(material(rows_of(reached)), other, [])
     assert "12 pairs" in text_of(data)
+    assert [{"code": "planner"}, "gestalt", "enav"] in labelled(data, "tab-settings-against")[
+        "rows"
+    ]
 
 
 def test_planners_of_one_campaign_are_compared_with_the_first():
