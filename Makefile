@@ -106,6 +106,11 @@ bench: $(SETUP)-bench ## set up and measure speed: a table, and build/bench.json
 drive-rate: $(SETUP) ## thinking while driving against stopping to think: m/h on 20 terrains
 	@$(BIN)/python -m pyharness.drive_rate --workers $(JOBS)
 
+.PHONY: montecarlo
+montecarlo: $(SETUP) ## run the standard 1,200 drives, or what is missing of them, and make their report
+	@$(BIN)/enav montecarlo run standard -o build/montecarlo --workers $(JOBS)
+	@$(BIN)/enav montecarlo report build/montecarlo -o build/montecarlo.pdf
+
 .PHONY: coverage
 coverage: $(SETUP) ## coverage of Navlib by its C tests alone: build/coverage/report/index.html
 	@find build -path 'build/coverage/*.gcda' -delete 2>/dev/null || true

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pyharness.cli_compare import compare
 from pyharness.cli_modes import modes_command
+from pyharness.cli_montecarlo import montecarlo
 from pyharness.cli_records import evaluate_arc_command, replay_command
 from pyharness.cli_sim import stereo_noise
 from pyharness.cli_terrain import terrain
@@ -62,9 +62,9 @@ def _fail(message: str) -> int:
     return EXIT_BAD_INPUT
 
 
-cli.add_command(compare)
 cli.add_command(terrain)
 cli.add_command(modes_command)
+cli.add_command(montecarlo)
 terrain.add_command(stereo_noise)
 cli.add_command(replay_command)
 cli.add_command(evaluate_arc_command)

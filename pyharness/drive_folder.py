@@ -25,6 +25,7 @@ from sim.config import dump_model
 from sim.terrain import Terrain
 
 PRODUCT_FILES = ("drive.dp", "summary.json")
+SCENARIO_FILE = "scenario.yaml"
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,26 +97,44 @@ def _run_into(
     progress: ProgressSink | None,
     server: CommandServer | None,
 ) -> dict[str, Any]:
-    from pyharness.overhead import draw_overhead
-
-    (folder / "scenario.yaml").write_text(dump_model(scenario), "utf-8")
-    info = drive_info(scenario)
-    history = History(native_schema(), info)
-    start_s = time.perf_counter()
-    with DpWriter(folder / "drive.dp", info) as writer:
-        subscribers: list[Callable[[Record], None]] = [
-            writer.write,
-            history.take,
-        ]
+    (folder / SCENARIO_FILE).write_text(dump_model(scenario), "utf-8")
+    history = History(native_schema(), drive_info(scenario))
+    with DpWriter(folder / "drive.dp", history.info) as writer:
+        subscribers: list[Callable[[Record], None]] = [writer.write, history.take]
         if progress is not None:
             subscribers.append(_reporter(history, progress))
-        drive(scenario, terrain, planner_class, RecordStream(subscribers), server)
-    duration_wall_s = time.perf_counter() - start_s
-
-    summary = with_wall_time(metrics.summarize(history), duration_wall_s)
-    draw_overhead(history, terrain, folder / "overhead.png")
-    metrics.write(history, summary, folder)
+        summary = summarized_drive(scenario, terrain, planner_class, history, subscribers, server)
+    write_products(history, terrain, summary, folder)
     return summary
+
+
+def summarized_drive(
+    scenario: Scenario,
+    terrain: Terrain,
+    planner_class: type[Planner],
+    history: History,
+    subscribers: list[Callable[[Record], None]],
+    server: CommandServer | None = None,
+) -> dict[str, Any]:
+    """Run one drive, whose history is among the subscribers to its records; return its summary."""
+    start_s = time.perf_counter()
+    drive(scenario, terrain, planner_class, RecordStream(subscribers), server)
+    duration_wall_s = time.perf_counter() - start_s
+    return with_wall_time(metrics.summarize(history), duration_wall_s)
+
+
+def write_products(
+    history: History,
+    terrain: Terrain,
+    summary: dict[str, Any],
+    folder: Path,
+    has_truth: bool = True,
+) -> None:
+    """Write what is made of a drive's records; without the truth it takes a tenth of the space."""
+    from pyharness.overhead import draw_overhead
+
+    draw_overhead(history, terrain, folder / "overhead.png")
+    metrics.write(history, summary, folder, has_truth)
 
 
 def with_wall_time(summary: Mapping[str, Any], duration_wall_s: float) -> dict[str, Any]:

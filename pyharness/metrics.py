@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pyharness.called_safe import called_safe
 from pyharness.dp import Message
 from pyharness.evr import evr_line
 from pyharness.history import History
@@ -35,6 +36,7 @@ def summarize(history: History) -> dict[str, Any]:
     duration_s = float(truth["time_s"][-1]) if len(truth) else 0.0
     evaluations = np.array([int(answer["ace_evaluations"]) for _, answer in history.selections])
     bogie = np.maximum(np.abs(truth["bogie_left_rad"]), np.abs(truth["bogie_right_rad"]))
+    safe = called_safe(history)
     return {
         "outcome": history.outcome.outcome,
         "fault_detail": history.outcome.fault_detail,
@@ -59,6 +61,10 @@ def summarize(history: History) -> dict[str, Any]:
         "wheel_drop_max_m": _extreme(truth["wheel_drop_m"]),
         "slip_max": _extreme(truth["slip"]),
         "localization_error_final_m": _localization_error_m(history, truth),
+        "distance_called_safe_m": safe.distance_m,
+        "distance_leaving_m": safe.distance_leaving_m,
+        "violations_called_safe": safe.violations,
+        "violations_leaving": safe.violations_leaving,
         "rejections": rejection_counts(history),
     }
 
@@ -84,10 +90,11 @@ def _count(counts: npt.NDArray[Any], reason: Any) -> int:
     return int(counts[reason.value]) if reason.value < len(counts) else 0
 
 
-def write(history: History, summary: dict[str, Any], folder: Path) -> None:
+def write(history: History, summary: dict[str, Any], folder: Path, has_truth: bool = True) -> None:
     """Write the tables of a drive, and its summary last."""
     (folder / "metrics.csv").write_text(cycles_csv(history), "utf-8")
-    (folder / "truth.csv").write_text(truth_csv(history), "utf-8")
+    if has_truth:
+        (folder / "truth.csv").write_text(truth_csv(history), "utf-8")
     (folder / "evr.log").write_text(evr_log(history), "utf-8")
     (folder / "summary.json").write_text(summary_text(summary), "utf-8")
 
@@ -125,7 +132,7 @@ def cycles_csv(history: History) -> str:
         )
     ]
     header = ["cycle", "distance_driven_m", *CYCLE_COLUMNS]
-    return _csv(header, ([row[name] for name in header] for row in rows))
+    return csv_text(header, ([row[name] for name in header] for row in rows))
 
 
 CYCLE_COLUMNS = [
@@ -213,7 +220,7 @@ def truth_csv(history: History) -> str:
         for name in path:
             values = values[name]
         columns.append(values.tolist())
-    return _csv(TRUTH_COLUMNS, zip(*columns, strict=True))
+    return csv_text(TRUTH_COLUMNS, zip(*columns, strict=True))
 
 
 def evr_log(history: History) -> str:
@@ -221,7 +228,7 @@ def evr_log(history: History) -> str:
     return "".join(f"{evr_line(evr)}\n" for evr in history.evrs)
 
 
-def _csv(header: Iterable[str], rows: Iterable[Sequence[Any]]) -> str:
+def csv_text(header: Iterable[str], rows: Iterable[Sequence[Any]]) -> str:
     """Return CSV text; numbers with nine significant digits, as far as any of them means."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

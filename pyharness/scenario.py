@@ -5,7 +5,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self
 
 import numpy as np
 from pydantic import (
@@ -223,26 +223,29 @@ class Scenario(ConfigModel):
 # ------------------------------------------------------------------ reading
 
 
-def load_scenario(path: Path | None, overrides: Mapping[str, object]) -> Scenario:
+def load_scenario(
+    path: Path | None, overrides: Mapping[str, object], overrides_folder: Path = Path()
+) -> Scenario:
     """Read a scenario, apply overrides and fill in everything that was left out.
 
     Relative names of files in a scenario start at its own folder, those of overrides at the
-    working directory.
+    working directory or the folder given.
 
     Raises:
         ConfigError: With one line for every fault.
     """
-    folder = Path() if path is None else path.parent
+    folder = overrides_folder if path is None else path.parent
+    folders = _Folders(folder, overrides_folder)
     parts = {key: value for key, value in overrides.items() if key.startswith("vehicle.")}
     if parts:
         overrides = {key: value for key, value in overrides.items() if key not in parts}
         # parts of a vehicle that is named can be set once it is spelled out
         vehicle = _read(path, overrides).vehicle
         if isinstance(vehicle, str):
-            spelled_out = _named_vehicle(vehicle, folder, overrides).model_dump(mode="json")
+            spelled_out = _named_vehicle(vehicle, folders, overrides).model_dump(mode="json")
             overrides = {**overrides, "vehicle": spelled_out}
         overrides = {**overrides, **parts}
-    scenario = _resolve(_read(path, overrides), folder, overrides)
+    scenario = _resolve(_read(path, overrides), folders, overrides)
     return _with_planner_params(scenario, path, overrides)
 
 
@@ -252,11 +255,21 @@ def _read(path: Path | None, overrides: Mapping[str, object]) -> Scenario:
     return load_model(path, Scenario, _for_another_planner(path, overrides))
 
 
-def _named_vehicle(name: str, folder: Path, overrides: Mapping[str, object]) -> Vehicle:
+class _Folders(NamedTuple):
+    """Where relative names of files start: those of the scenario, and those of overrides."""
+
+    scenario: Path
+    overrides: Path
+
+    def of(self, is_override: bool) -> Path:
+        return self.overrides if is_override else self.scenario
+
+
+def _named_vehicle(name: str, folders: _Folders, overrides: Mapping[str, object]) -> Vehicle:
     """Vehicle of a file, or a built-in one."""
     if not name.endswith((".yaml", ".yml")):
         return load_vehicle(name)
-    return load_vehicle((Path() if "vehicle" in overrides else folder) / name)
+    return load_vehicle(folders.of("vehicle" in overrides) / name)
 
 
 def check_places(
@@ -314,12 +327,12 @@ def _place_of(path: Path | None, overrides: Mapping[str, object], names: Sequenc
     return f"default {names[0]}"
 
 
-def _resolve(scenario: Scenario, folder: Path, overrides: Mapping[str, object]) -> Scenario:
+def _resolve(scenario: Scenario, folders: _Folders, overrides: Mapping[str, object]) -> Scenario:
     is_terrain_override = not {"terrain", "terrain.file"}.isdisjoint(overrides)
-    terrain_folder = Path() if is_terrain_override else folder
+    terrain_folder = folders.of(is_terrain_override)
     vehicle = scenario.vehicle
     if isinstance(vehicle, str):
-        vehicle = _named_vehicle(vehicle, folder, overrides)
+        vehicle = _named_vehicle(vehicle, folders, overrides)
     given = {name: value for name, value in scenario.navlib if value is not None}
     level = {"product_level": PRODUCT_LEVELS[scenario.records]}
     params = param_values({**vehicle_params(vehicle), **level, **given})
@@ -338,7 +351,7 @@ def _resolve(scenario: Scenario, folder: Path, overrides: Mapping[str, object]) 
             "goal": None,
             "mode": None,
             "waypoints": waypoints,
-            "planner": _resolve_planner(scenario.planner, overrides, folder),
+            "planner": _resolve_planner(scenario.planner, folders.of("planner" in overrides)),
             "navlib": NavlibSection.model_validate(params),
             "vehicle": vehicle,
         }
@@ -358,12 +371,11 @@ def _resolve_terrain(scenario: Scenario, folder: Path) -> TerrainSection:
     return terrain.with_files_in(folder).model_copy(update=update)
 
 
-def _resolve_planner(name: str, overrides: Mapping[str, object], folder: Path) -> str:
+def _resolve_planner(name: str, folder: Path) -> str:
     if ":" not in name:
         return name
     file_name, _, class_name = name.rpartition(":")
-    start = Path() if "planner" in overrides else folder
-    return f"{(start / file_name).absolute()}:{class_name}"
+    return f"{(folder / file_name).absolute()}:{class_name}"
 
 
 def _for_another_planner(path: Path, overrides: Mapping[str, object]) -> Mapping[str, object]:

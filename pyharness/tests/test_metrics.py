@@ -68,6 +68,10 @@ def test_the_summary_has_these_keys_in_this_order(history):
         "wheel_drop_max_m",
         "slip_max",
         "localization_error_final_m",
+        "distance_called_safe_m",
+        "distance_leaving_m",
+        "violations_called_safe",
+        "violations_leaving",
         "rejections",
     ]
 
