@@ -189,6 +189,12 @@ def test_where_no_drive_can_be_run_that_is_an_error_and_not_an_outcome(
         servers.run(task())
 
 
+def test_a_process_that_cannot_be_started_is_one_line(servers, monkeypatch):
+    monkeypatch.setattr(sys, "executable", "/nowhere/python")
+    with pytest.raises(HarnessError, match="no drive can be run: No such file or directory"):
+        servers.run(task())
+
+
 def test_drives_leave_nothing_in_the_folder_for_temporary_files(own_folder):
     servers = Servers()
     servers.run(task(keep="all"))
