@@ -111,7 +111,10 @@ class Servers:
                 raise StoppedError(STOPPED)
             if self._idle:
                 return self._idle.pop()
-            server = _Server()
+            try:
+                server = _Server()
+            except OSError as error:
+                raise HarnessError(f"no drive can be run: {error.strerror}") from error
             self._all.add(server)
             return server
 

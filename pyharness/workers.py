@@ -74,13 +74,19 @@ _WORKER_SERVERS = Servers()
 """Of a Dask worker: they end with it."""
 
 
-def run_on_worker(task: DriveTask) -> DriveResult:
-    """Run one drive on the machine of a Dask worker."""
+def run_on_worker(task: DriveTask, version: str) -> DriveResult:
+    """Run one drive on the machine of a Dask worker.
+
+    Raises:
+        HarnessError: The worker has another version of this package.
+    """
+    if version != version_here():
+        raise HarnessError(f"a worker has enav-sim {version_here()}, expected {version}")
     return _WORKER_SERVERS.run(task)
 
 
 def version_here() -> str:
-    """Return the version of this package on the machine of a Dask worker."""
+    """Return the version of this package."""
     return metadata.version("enav-sim")
 
 
@@ -96,19 +102,24 @@ class _DaskWorkers:
 
     def submit(self, task: DriveTask) -> Future[DriveResult]:
         try:
-            return self.executor.submit(run_on_worker, task)
+            return self.executor.submit(run_on_worker, task, version_here())
         except (RuntimeError, OSError):
             raise self._gone() from None
 
     def result(self, future: Future[DriveResult]) -> DriveResult:
         from distributed import KilledWorker
+        from distributed.comm import CommClosedError
 
         try:
             return future.result()
         except KilledWorker:
             return DriveResult(outcome="killed", detail="every Dask worker that had it died")
-        except (CancelledError, OSError):
+        except (CancelledError, CommClosedError):
             raise self._gone() from None
+        except HarnessError:
+            raise
+        except Exception as error:  # a worker without this package, for one
+            raise HarnessError(f"{self.address}: a worker cannot run drives: {error!r}") from None
 
     def _gone(self) -> HarnessError:
         return HarnessError(f"{self.address}: the Dask scheduler is gone")
@@ -119,7 +130,7 @@ def dask_workers(address: str) -> Iterator[Workers]:
     """Run drives on the workers of a Dask cluster; at the end what has not begun is given up.
 
     Raises:
-        HarnessError: There is no such cluster, or its workers have another version.
+        HarnessError: There is no such cluster.
     """
     try:
         from distributed import Client
@@ -134,22 +145,8 @@ def dask_workers(address: str) -> Iterator[Workers]:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise HarnessError(f"--scheduler {address}: no Dask scheduler answers: {reason}") from None
     with client:
-        _check_versions(client, address)
         executor = client.get_executor(pure=False)
         try:
             yield _DaskWorkers(address, executor, sum(client.nthreads().values()))
         finally:
             executor.shutdown(wait=False)
-
-
-def _check_versions(client: Any, address: str) -> None:
-    here = version_here()
-    try:
-        versions: dict[str, str] = client.run(version_here)
-    except Exception as error:
-        raise HarnessError(
-            f"--scheduler {address}: a worker cannot run enav-sim: {error!r}"
-        ) from None
-    for worker, version in versions.items():
-        if version != here:
-            raise HarnessError(f"{worker}: a worker with enav-sim {version}, expected {here}")

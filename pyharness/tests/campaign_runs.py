@@ -3,7 +3,9 @@
 
 import csv
 import json
+import os
 import shutil
+import signal
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -68,6 +70,14 @@ def told_pids(folder, count=1):
     """Wait until as many stubs have told their processes; return all of these."""
     paths = until(lambda: len(found := list(folder.glob("*.pids"))) >= count and found)
     return [int(text) for path in paths for text in path.read_text().split()]
+
+
+def kill_told(folder):
+    """Kill what a test that failed has left of its stubs."""
+    for path in folder.glob("*.pids"):
+        for pid in map(int, path.read_text().split()):
+            if is_alive(pid):
+                os.kill(pid, signal.SIGKILL)
 
 
 def is_alive(pid):

@@ -12,7 +12,7 @@ import pytest
 from pyharness.child_drives import DriveTask, Servers, StoppedError
 from pyharness.errors import HarnessError
 from pyharness.scenario import load_scenario
-from pyharness.tests.campaign_runs import descendants, is_alive, stub, told_pids, until
+from pyharness.tests.campaign_runs import descendants, is_alive, kill_told, stub, told_pids, until
 from pyharness.tests.quick_drive import QUICK_DRIVE
 
 pytestmark = [pytest.mark.faults, pytest.mark.slow]
@@ -23,6 +23,15 @@ def servers():
     servers = Servers()
     yield servers
     servers.stop()
+
+
+@pytest.fixture(autouse=True)
+def own_folder(tmp_path, monkeypatch):
+    """Leave no temporary file and no process of a test behind."""
+    (tmp_path / "temporary").mkdir()
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))
+    yield tmp_path / "temporary"
+    kill_told(tmp_path)
 
 
 def task(planner="enav", keep="none", time_out_s=100.0, **overrides):
@@ -180,10 +189,15 @@ def test_where_no_drive_can_be_run_that_is_an_error_and_not_an_outcome(
         servers.run(task())
 
 
-def test_drives_leave_nothing_in_the_folder_for_temporary_files(tmp_path, monkeypatch):
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
+def test_a_process_that_cannot_be_started_is_one_line(servers, monkeypatch):
+    monkeypatch.setattr(sys, "executable", "/nowhere/python")
+    with pytest.raises(HarnessError, match="no drive can be run: No such file or directory"):
+        servers.run(task())
+
+
+def test_drives_leave_nothing_in_the_folder_for_temporary_files(own_folder):
     servers = Servers()
     servers.run(task(keep="all"))
-    assert len(list(tmp_path.iterdir())) == 1
+    assert len(list(own_folder.iterdir())) == 1
     servers.stop()
-    assert list(tmp_path.iterdir()) == []
+    assert list(own_folder.iterdir()) == []

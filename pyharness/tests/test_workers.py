@@ -5,11 +5,13 @@ import json
 import os
 import subprocess
 import sys
+from concurrent.futures import CancelledError, Future
 
 import pytest
 
 from pyharness import workers
 from pyharness.campaign import load_campaign
+from pyharness.child_drives import DriveTask
 from pyharness.errors import HarnessError
 from pyharness.montecarlo import run_campaign
 from pyharness.tests.campaign_runs import (
@@ -21,7 +23,7 @@ from pyharness.tests.campaign_runs import (
     until,
     write_campaign,
 )
-from pyharness.workers import dask_workers, local_workers
+from pyharness.workers import dask_workers, local_workers, run_on_worker
 
 QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
@@ -146,6 +148,37 @@ def test_without_the_extra_it_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(HarnessError, match="the extra `cluster`"), dask_workers("tcp://x:1"):
         pass
+
+
+def test_a_worker_of_another_version_runs_nothing():
+    with pytest.raises(HarnessError, match=r"a worker has enav-sim .*, expected 99.0"):
+        run_on_worker(DriveTask("", "none", 1.0), "99.0")
+
+
+@pytest.mark.faults
+@pytest.mark.parametrize(
+    ("error", "expected"),
+    [
+        (ModuleNotFoundError("No module named 'pyharness'"), "a worker cannot run drives: Module"),
+        (HarnessError("a worker has enav-sim 1.0"), "a worker has enav-sim 1.0"),
+        (CancelledError(), "the Dask scheduler is gone"),
+    ],
+)
+def test_what_a_cluster_cannot_do_is_one_line(cluster, error, expected):
+    future = Future()
+    future.set_exception(error)
+    with dask_workers(cluster.address) as pool, pytest.raises(HarnessError, match=expected):
+        pool.result(future)
+
+
+@pytest.mark.faults
+def test_a_drive_whose_workers_all_died_was_killed(cluster):
+    killed = pytest.importorskip("distributed").KilledWorker
+    future = Future()
+    future.set_exception(killed("task", None, 4))
+    with dask_workers(cluster.address) as pool:
+        result = pool.result(future)
+    assert (result.outcome, result.summary) == ("killed", None)
 
 
 def test_nothing_runs_on_after_local_workers_are_gone():
