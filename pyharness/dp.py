@@ -268,11 +268,20 @@ def used_bytes(kind: int, message: Message) -> bytes:
     As in Navlib: a record that ends in an array of records, counted by the last field whose name
     ends in `_count`, ends after the entries in use.
     """
+    data = message.tobytes()
+    tail = _tail(kind)
+    if tail is None:
+        return data
+    count_name, offset, item_bytes = tail
+    return data[: offset + int(message[count_name]) * item_bytes]
+
+
+@functools.cache
+def _tail(kind: int) -> tuple[str, int, int] | None:
+    """Return what counts the entries that a kind ends in, their offset and size, if it does."""
     definition = native_schema().records[native_schema().kinds[kind].type]
     last = definition.fields[-1]
     counts = [item.name for item in definition.fields if item.name.endswith("_count")]
-    data = message.tobytes()
     if last.type in _NUMBERS or last.count == 1 or not counts:
-        return data
-    item_bytes = native_schema().records[last.type].size_bytes
-    return data[: last.offset + int(message[counts[-1]]) * item_bytes]
+        return None
+    return counts[-1], last.offset, native_schema().records[last.type].size_bytes
