@@ -351,6 +351,7 @@ def bench_dijkstra(bench: Bench) -> Result:
     ctx = navlib.context
     cells = np.frombuffer(ffi.buffer(ctx.costmap.cells), dtype_of("nav_cost_cell_t"))
     cells["terrain_reason"] = 0
+    cells["barred_headings"] = 0  # the reference knows no headings
     cells["cost_s_per_m"] = np.random.default_rng(1).uniform(20.0, 60.0, len(cells))
     goal = ffi.new(
         "nav_waydisc_t *", {"x_site_m": -20.0, "y_site_m": 0.0, "radius_m": GOAL.radius_m}

@@ -36,11 +36,11 @@ def test_wheels_that_dig_in_are_noticed():
 
 def test_circling_is_noticed():
     square = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]
-    assert "without coming nearer" in drive(StuckWatch(StuckRules()), square * 30)
+    assert "without coming nearer" in drive(StuckWatch(StuckRules()), square * 60)
 
 
 def test_turning_in_place_for_ever_is_noticed():
-    reason = drive(StuckWatch(StuckRules()), [(0.0, 0.0)] * 300, Arc(0.0, 0.5))
+    reason = drive(StuckWatch(StuckRules()), [(0.0, 0.0)] * 600, Arc(0.0, 0.5))
     assert "without coming nearer" in reason
 
 
