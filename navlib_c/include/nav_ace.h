@@ -49,17 +49,21 @@ typedef struct
 } nav_ace_scene_t;
 
 /**
- * Bounds at one pose.
- * @param position_m, yaw_rad  uncertainty: the rover is within this radius and yaw error of the pose
+ * Bounds at one pose, and the first limit that they exceed. They are no tighter than the answer needs: of an
+ * accepted pose they are within the limits, but wheel drop and clearance may be far better than they say;
+ * of a pose refused for a wheel drop the others may be missing, which is_certified 0 tells.
+ * @param uncertainty  the rover is within this radius and yaw error of the pose
+ * @param is_leaving   true: the leave limits, for a rover that finds no other way on
  */
 void nav_ace_evaluate(const nav_ace_scene_t *scene,
                       const nav_pose2_t *pose,
                       const nav_uncertainty_t *uncertainty,
+                      bool is_leaving,
                       nav_ace_bounds_t *bounds);
 
 /**
  * The first limit that bounds exceed, NONE when there is none.
- * @param is_leaving  true: the leave limits, for a rover that finds no other way on
+ * @param is_leaving  true: the leave limits
  */
 nav_reason_t nav_ace_refuse(const nav_params_t *params,
                             const nav_ace_bounds_t *bounds,

@@ -397,6 +397,7 @@ static void analyze(nav_ctx_t *ctx,
                        &ctx->surface_state);
     nav_costmap_mark(&ctx->costmap, &ctx->params, &ctx->kioz, in->global_position_m);
     nav_relief_update(&ctx->relief, &ctx->costmap, &ctx->costmap_state, &ctx->surface);
+    nav_relief_rest(&ctx->relief, &ctx->surface, ctx->params.wheel_radius_m);
     ctx->is_analyzed = 1U;
 
     for (uint32_t k = 0U; k < (uint32_t) NAV_COSTMAP_CELLS; k++)
@@ -608,16 +609,15 @@ static nav_reason_t evaluate_pose(const nav_ctx_t *ctx,
     const nav_uncertainty_t grown = nav_ace_grow(&ctx->params, &in->uncertainty, distance_m);
     nav_reason_t reason = NAV_REASON_NONE;
 
-    nav_ace_evaluate(&scene, pose, &grown, bounds);
+    nav_ace_evaluate(&scene, pose, &grown,
+                     (in->is_leaving != 0U) && (distance_m <= ctx->params.leave_length_m), bounds);
     if (nav_kioz_forbids(&ctx->kioz, pose->x_m, pose->y_m, in->uncertainty.global_position_m))
     {
         reason = NAV_REASON_KIOZ;
     }
     else if (test_terrain)
     {
-        const bool is_leaving =
-            (in->is_leaving != 0U) && (distance_m <= ctx->params.leave_length_m);
-        reason = nav_ace_refuse(&ctx->params, bounds, is_leaving);
+        reason = (nav_reason_t) bounds->reason;
     }
     else
     {

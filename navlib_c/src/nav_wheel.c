@@ -531,18 +531,20 @@ static double under_hub_m(const track_t *track,
                           double u_m,
                           double reach_m)
 {
+    const double lean = fabs(track->ground->forward_up);
     double under_m = NAV_ETA_NONE;
+    double from_m = low_u_m(track, profile, 0U);
     for (uint32_t k = 0U; (k + 1U) < profile->count; k++)
     {
         const double stretch_m = nav_min(profile->under_m[k], profile->under_m[k + 1U]);
         const double over_m = nav_max(profile->over_m[k], profile->over_m[k + 1U]);
-        const double near_m = reach_m + ((over_m - stretch_m) * fabs(track->ground->forward_up));
-        const double from_m = low_u_m(track, profile, k);
+        const double near_m = reach_m + ((over_m - stretch_m) * lean);
         const double to_m = low_u_m(track, profile, k + 1U);
         if (((nav_min(from_m, to_m) - near_m) <= u_m) && (u_m <= (nav_max(from_m, to_m) + near_m)))
         {
             under_m = nav_min(under_m, stretch_m);
         }
+        from_m = to_m;
     }
     return (under_m < NAV_ETA_NONE) ? (under_m * track->ground->cos_slope) : -NAV_ETA_NONE;
 }
@@ -552,17 +554,19 @@ static double under_hub_m(const track_t *track,
 static double part_low_m(const track_t *track, const profile_t *profile, double u_m, double half_m)
 {
     const double reach_m = half_m + track->half_u_m;
-    double standing_m = -NAV_ETA_NONE;
+    const double radius_m = track->radius_m;
+    double standing_m = under_hub_m(track, profile, u_m, reach_m) + radius_m;
     for (uint32_t k = 0U; k < profile->count; k++)
     {
         const double along_m = fabs(low_u_m(track, profile, k) - u_m) + reach_m;
-        if (along_m < track->radius_m)
+        const double eta_m = profile->low_m[k] * track->ground->cos_slope;
+        /* no higher than straight above it */
+        if ((along_m < radius_m) && ((eta_m + radius_m) > standing_m))
         {
-            standing_m = nav_max(standing_m, (profile->low_m[k] * track->ground->cos_slope) +
-                                                 disc_m(track->radius_m, along_m));
+            standing_m = nav_max(standing_m, eta_m + disc_m(radius_m, along_m));
         }
     }
-    return nav_max(standing_m - track->radius_m, under_hub_m(track, profile, u_m, reach_m));
+    return standing_m - radius_m;
 }
 
 /** Lowest hub over all places. */

@@ -79,7 +79,7 @@ static void evaluate_poses(FILE *file)
         const nav_pose2_t pose = {numbers[0], numbers[1], numbers[2]};
         const nav_uncertainty_t uncertainty = {numbers[3], numbers[4], 0.0};
         nav_ace_bounds_t bounds;
-        nav_ace_evaluate(&scene, &pose, &uncertainty, &bounds);
+        nav_ace_evaluate(&scene, &pose, &uncertainty, false, &bounds);
         pose_count++;
         certified_count += bounds.is_certified;
         safe_count += (bounds.reason == (uint32_t) NAV_REASON_NONE) ? 1U : 0U;

@@ -97,7 +97,7 @@ class Scene
                                        &ctx->relief};
         const nav_pose2_t pose = {x_m, y_m, yaw_rad};
         nav_ace_bounds_t bounds;
-        nav_ace_evaluate(&scene, &pose, &u, &bounds);
+        nav_ace_evaluate(&scene, &pose, &u, false, &bounds);
         return bounds;
     }
 

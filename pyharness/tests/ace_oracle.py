@@ -61,7 +61,7 @@ def ace_bounds(navlib: Navlib, poses: Poses, uncertainty: npt.NDArray[np.float64
     for index in range(len(poses)):
         pose_c.x_m, pose_c.y_m, pose_c.yaw_rad = poses[index].tolist()
         doubt_c.position_m, doubt_c.yaw_rad = uncertainty[index].tolist()
-        lib.nav_ace_evaluate(scene, pose_c, doubt_c, out + index)
+        lib.nav_ace_evaluate(scene, pose_c, doubt_c, False, out + index)
     return bounds
 
 
