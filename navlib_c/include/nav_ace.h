@@ -13,8 +13,7 @@
 #define NAV_ACE_H
 
 #include "nav_arc.h"
-#include "nav_relief.h"
-#include "nav_vehicle.h"
+#include "nav_states.h"
 
 #define NAV_ACE_BOUNDS_FIELDS(S, A, N, M)                                                          \
     S(double, clearance_min_m, "m", "lower bound of belly clearance along the body z axis")        \
@@ -38,7 +37,51 @@
     S(uint32_t, is_certified, "1", "1 when the bounds are consistent with the growth they assume")
 NAV_RECORD(NAV_ACE_BOUNDS_FIELDS, nav_ace_bounds_t);
 
-/** What ACE reads; all of it stays unchanged. */
+/** The states an attempt assumes the rover stays within. Bounds found from such a range that lie
+ * inside it are certified: the map from states to states then has its fixed point, the settled
+ * rover, inside (Brouwer). */
+typedef struct
+{
+    double middle[NAV_LINKAGE_STATES];
+    double half[NAV_LINKAGE_STATES];
+    double forward_m[NAV_WHEELS]; /* places of the wheels in the middle state */
+    double right_m[NAV_WHEELS];
+    double height_m[NAV_WHEELS];
+    double close_from_m; /* wheels whose rough heights span more are looked at closely */
+    double widest_m;     /* largest span of rough heights */
+    bool is_bounded;     /* it led to states, and no wheel's places have grown to the limit */
+} nav_ace_range_t;
+
+/** The limits that bounds are held against. */
+typedef struct
+{
+    double clearance_min_m;
+    double tilt_max_rad;
+    double rocker_max_rad;
+    double bogie_max_rad;
+    double wheel_drop_max_m;
+} nav_ace_limits_t;
+
+/** All that stays the same during one evaluation. */
+typedef struct
+{
+    const nav_params_t *params;
+    const nav_vehicle_t *vehicle;
+    bool is_leaving;
+    nav_ace_limits_t limits;
+    nav_uncertainty_t uncertainty;
+    nav_ground_t ground;
+} nav_ace_view_t;
+
+/** What an evaluation works on, too large for the stack. It means nothing between evaluations. */
+typedef struct
+{
+    nav_ace_view_t view;
+    nav_ace_range_t range;
+    nav_spanned_t spanned;
+} nav_ace_work_t;
+
+/** What ACE reads, and what it works on. */
 typedef struct
 {
     const nav_params_t *params;
@@ -46,6 +89,7 @@ typedef struct
     const nav_surface_t *surface;
     const nav_costmap_t *costmap; /* for the planes only */
     const nav_relief_t *relief;
+    nav_ace_work_t *work;
 } nav_ace_scene_t;
 
 /**

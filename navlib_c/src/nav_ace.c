@@ -11,6 +11,7 @@
 #include "nav_ace.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #include "nav_belly.h"
 #include "nav_ground.h"
@@ -52,21 +53,6 @@ static const double CLOSE_FROM_M[ATTEMPTS] = {NAV_ETA_NONE, 0.1, 0.05, 0.0, 0.0,
 #define TIGHTENINGS 3U
 #define FIRST_GAIN_M 0.05
 
-/** The states an attempt assumes the rover stays within. Bounds found from such a range that lie
- * inside it are certified: the map from states to states then has its fixed point, the settled
- * rover, inside (Brouwer). */
-typedef struct
-{
-    double middle[NAV_LINKAGE_STATES];
-    double half[NAV_LINKAGE_STATES];
-    double forward_m[NAV_WHEELS]; /* places of the wheels in the middle state */
-    double right_m[NAV_WHEELS];
-    double height_m[NAV_WHEELS];
-    double close_from_m; /* wheels whose rough heights span more are looked at closely */
-    double widest_m;     /* largest span of rough heights */
-    bool is_bounded;     /* it led to states, and no wheel's places have grown to the limit */
-} range_t;
-
 /* Half widths that a range has at least: m, and rad for roll, pitch, rocker, bogies. Between walls a
  * rover can stand in more than one way; a range holds all of those that are near. */
 static const double LEAST_HALF[NAV_LINKAGE_STATES] = {0.05, 0.04, 0.05, 0.04, 0.12, 0.12};
@@ -78,27 +64,6 @@ static const double LEAST_HALF[NAV_LINKAGE_STATES] = {0.05, 0.04, 0.05, 0.04, 0.
 
 /* The nearest cells say little where they are this far off the plane. */
 #define FIRST_HEIGHT_MAX_M 0.3
-
-/** The limits that bounds are held against. */
-typedef struct
-{
-    double clearance_min_m;
-    double tilt_max_rad;
-    double rocker_max_rad;
-    double bogie_max_rad;
-    double wheel_drop_max_m;
-} limits_t;
-
-/** All that stays the same during one evaluation. */
-typedef struct
-{
-    const nav_params_t *params;
-    const nav_vehicle_t *vehicle;
-    bool is_leaving;
-    limits_t limits;
-    nav_uncertainty_t uncertainty;
-    nav_ground_t ground;
-} view_t;
 
 /** How far a part of the rover can be from its nominal place in the plane. */
 typedef struct
@@ -122,12 +87,13 @@ static double squared(double x)
     return x * x;
 }
 
-static limits_t limits_of(const nav_params_t *params, bool is_leaving)
+static nav_ace_limits_t limits_of(const nav_params_t *params, bool is_leaving)
 {
-    const limits_t planned = {params->clearance_min_m, params->tilt_max_rad, params->rocker_max_rad,
-                              params->bogie_max_rad, params->wheel_drop_max_m};
+    const nav_ace_limits_t planned = {params->clearance_min_m, params->tilt_max_rad,
+                                      params->rocker_max_rad, params->bogie_max_rad,
+                                      params->wheel_drop_max_m};
     /* never stricter than what is planned with */
-    const limits_t leaving = {
+    const nav_ace_limits_t leaving = {
         nav_min(params->leave_clearance_min_m, params->clearance_min_m),
         nav_max(params->leave_tilt_max_rad, params->tilt_max_rad),
         nav_max(params->leave_rocker_max_rad, params->rocker_max_rad),
@@ -140,13 +106,13 @@ static limits_t limits_of(const nav_params_t *params, bool is_leaving)
 /* ------------------------------------------------------------------ places of the wheels */
 
 /** The turn in the plane that keeps a pitched rover's yaw, which is measured in the horizontal. */
-static double turn_of_pitch(const view_t *view, double pitch_rad)
+static double turn_of_pitch(const nav_ace_view_t *view, double pitch_rad)
 {
     return pitch_rad * view->ground.rise_right;
 }
 
 /** Growth that all parts share: uncertainty, and what slopes make of the range. */
-static common_t common_of(const view_t *view, const double middle[], const double half[])
+static common_t common_of(const nav_ace_view_t *view, const double middle[], const double half[])
 {
     const double p = view->uncertainty.position_m;
     const double lift_m = half[NAV_LINKAGE_HEIGHT];
@@ -173,7 +139,9 @@ static growth_t growth_of(const common_t *common, double u_m, double v_m)
 }
 
 /** How far the suspension swings a hub fore and aft of its place in the middle of a range. */
-static double wheel_swing_m(const nav_vehicle_t *vehicle, const range_t *range, uint32_t wheel)
+static double wheel_swing_m(const nav_vehicle_t *vehicle,
+                            const nav_ace_range_t *range,
+                            uint32_t wheel)
 {
     const double u_m = vehicle->hub_x_m[wheel];
     const double pivot_m = vehicle->rocker_pivot_x_m;
@@ -201,8 +169,8 @@ static double wheel_swing_m(const nav_vehicle_t *vehicle, const range_t *range, 
     return swing_m;
 }
 
-static growth_t growth_wheel(const view_t *view,
-                             const range_t *range,
+static growth_t growth_wheel(const nav_ace_view_t *view,
+                             const nav_ace_range_t *range,
                              const common_t *common,
                              uint32_t wheel)
 {
@@ -222,7 +190,10 @@ static growth_t growth_wheel(const view_t *view,
 }
 
 /** The middle of a wheel's places, in the plane frame. */
-static void wheel_middle(const view_t *view, const range_t *range, uint32_t wheel, nav_box_t *box)
+static void wheel_middle(const nav_ace_view_t *view,
+                         const nav_ace_range_t *range,
+                         uint32_t wheel,
+                         nav_box_t *box)
 {
     const double turn = turn_of_pitch(view, range->middle[NAV_LINKAGE_PITCH]);
     const double lifted_m = range->middle[NAV_LINKAGE_HEIGHT] / view->ground.cos_slope;
@@ -232,8 +203,8 @@ static void wheel_middle(const view_t *view, const range_t *range, uint32_t whee
     box->v_m = (lifted_m * view->ground.right_up) + (v_m + (turn * u_m));
 }
 
-static nav_footprint_t wheel_footprint(const view_t *view,
-                                       const range_t *range,
+static nav_footprint_t wheel_footprint(const nav_ace_view_t *view,
+                                       const nav_ace_range_t *range,
                                        const common_t *common,
                                        const growth_t *growth,
                                        uint32_t wheel)
@@ -257,7 +228,7 @@ static nav_footprint_t wheel_footprint(const view_t *view,
 /* ------------------------------------------------------------------ heights of the wheels */
 
 /** The ground in a wheel's box: coarse where that is enough, cell by cell where it is not. */
-static nav_span_t wheel_ground(const view_t *view,
+static nav_span_t wheel_ground(const nav_ace_view_t *view,
                                const nav_footprint_t *footprint,
                                double coarse_span_max_m)
 {
@@ -277,8 +248,8 @@ static bool is_any_known(const nav_span_t *span)
 }
 
 /** Heights of one wheel by its disc. @return false when nothing is known under it */
-static bool wheel_closely(const view_t *view,
-                          const range_t *range,
+static bool wheel_closely(const nav_ace_view_t *view,
+                          const nav_ace_range_t *range,
                           const common_t *common,
                           const growth_t *growth,
                           uint32_t wheel,
@@ -309,8 +280,11 @@ static bool wheel_closely(const view_t *view,
 
 /** Heights of one wheel: rough where they span little enough. @return false when nothing is known under
  * it */
-static bool wheel_hub(
-    const view_t *view, range_t *range, const common_t *common, uint32_t wheel, nav_interval_t *hub)
+static bool wheel_hub(const nav_ace_view_t *view,
+                      nav_ace_range_t *range,
+                      const common_t *common,
+                      uint32_t wheel,
+                      nav_interval_t *hub)
 {
     const growth_t growth = growth_wheel(view, range, common, wheel);
     const double lean = fabs(range->middle[NAV_LINKAGE_ROLL]) + range->half[NAV_LINKAGE_ROLL];
@@ -330,7 +304,9 @@ static bool wheel_hub(
 }
 
 /** Wheel drop and unknown share over all wheels. */
-static void drop_bounds(const view_t *view, const range_t *range, nav_ace_bounds_t *bounds)
+static void drop_bounds(const nav_ace_view_t *view,
+                        const nav_ace_range_t *range,
+                        nav_ace_bounds_t *bounds)
 {
     const common_t common = common_of(view, range->middle, range->half);
     const double coarse_span_max_m = view->limits.wheel_drop_max_m;
@@ -353,7 +329,7 @@ static void drop_bounds(const view_t *view, const range_t *range, nav_ace_bounds
 /* ------------------------------------------------------------------ states */
 
 /** Does what was found lie inside the range that its growth assumed? */
-static bool is_consistent(const nav_spanned_t *spanned, const range_t *range)
+static bool is_consistent(const nav_spanned_t *spanned, const nav_ace_range_t *range)
 {
     bool is_inside = range->is_bounded;
     for (uint32_t k = 0U; (k < (uint32_t) NAV_LINKAGE_STATES) && is_inside; k++)
@@ -365,7 +341,7 @@ static bool is_consistent(const nav_spanned_t *spanned, const range_t *range)
 }
 
 /** The first range: around where the cells nearest to the wheels' places put them. */
-static void range_first(const view_t *view, range_t *range)
+static void range_first(const nav_ace_view_t *view, nav_ace_range_t *range)
 {
     const nav_vehicle_t *vehicle = view->vehicle;
     for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
@@ -387,11 +363,11 @@ static void range_first(const view_t *view, range_t *range)
 }
 
 /** A range around what was found, no narrower than it, nor than the least half widths. */
-static void range_around(const view_t *view,
+static void range_around(const nav_ace_view_t *view,
                          const nav_spanned_t *spanned,
                          double widening,
                          const double least_half[NAV_LINKAGE_STATES],
-                         range_t *range)
+                         nav_ace_range_t *range)
 {
     for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
     {
@@ -408,7 +384,7 @@ static void range_around(const view_t *view,
 /* ------------------------------------------------------------------ bounds */
 
 /** Attitude against gravity from the attitude against the plane. */
-static void attitude_bounds(const view_t *view,
+static void attitude_bounds(const nav_ace_view_t *view,
                             const nav_spanned_t *spanned,
                             nav_ace_bounds_t *bounds)
 {
@@ -471,7 +447,7 @@ static void suspension_bounds(const nav_spanned_t *spanned, nav_ace_bounds_t *bo
 }
 
 /** How far the belly can be from its nominal place in the plane, and from what stands under it. */
-static growth_t growth_belly(const view_t *view, const nav_spanned_t *spanned)
+static growth_t growth_belly(const nav_ace_view_t *view, const nav_spanned_t *spanned)
 {
     const nav_params_t *params = view->params;
     const double far_m = nav_max(fabs(params->belly_front_x_m), fabs(params->belly_rear_x_m));
@@ -491,7 +467,9 @@ static growth_t growth_belly(const view_t *view, const nav_spanned_t *spanned)
 }
 
 /** Lower bound of clearance and unknown share of the belly box. */
-static void belly_bounds(const view_t *view, const nav_spanned_t *spanned, nav_ace_bounds_t *bounds)
+static void belly_bounds(const nav_ace_view_t *view,
+                         const nav_spanned_t *spanned,
+                         nav_ace_bounds_t *bounds)
 {
     const nav_params_t *params = view->params;
     const double roll =
@@ -530,7 +508,7 @@ nav_reason_t nav_ace_refuse(const nav_params_t *params,
                             const nav_ace_bounds_t *bounds,
                             bool is_leaving)
 {
-    const limits_t limits = limits_of(params, is_leaving);
+    const nav_ace_limits_t limits = limits_of(params, is_leaving);
     nav_reason_t reason = NAV_REASON_NONE;
     if ((bounds->wheel_unknown > params->wheel_unknown_max) ||
         (bounds->belly_unknown > params->belly_unknown_max))
@@ -566,7 +544,9 @@ nav_reason_t nav_ace_refuse(const nav_params_t *params,
 }
 
 /** Does a wheel drop within a part of the first range refuse the pose? Then hardly any range does not. */
-static bool is_dropping(const view_t *view, range_t *range, nav_ace_bounds_t *bounds)
+static bool is_dropping(const nav_ace_view_t *view,
+                        nav_ace_range_t *range,
+                        nav_ace_bounds_t *bounds)
 {
     for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
     {
@@ -582,7 +562,7 @@ static bool is_dropping(const view_t *view, range_t *range, nav_ace_bounds_t *bo
 }
 
 /** The states that a range leads to. @return false when a wheel has nothing known to stand on */
-static bool span_range(const view_t *view, range_t *range, nav_spanned_t *spanned)
+static bool span_range(const nav_ace_view_t *view, nav_ace_range_t *range, nav_spanned_t *spanned)
 {
     const common_t common = common_of(view, range->middle, range->half);
     nav_interval_t heights[NAV_WHEELS];
@@ -609,8 +589,8 @@ static bool span_range(const view_t *view, range_t *range, nav_spanned_t *spanne
 }
 
 /** All bounds of the states that a range has led to. */
-static void bound_states(const view_t *view,
-                         const range_t *range,
+static void bound_states(const nav_ace_view_t *view,
+                         const nav_ace_range_t *range,
                          bool is_certified,
                          nav_spanned_t *spanned,
                          nav_ace_bounds_t *bounds)
@@ -627,8 +607,8 @@ static void bound_states(const view_t *view,
 
 /** Certified bounds are themselves a range that the rover stays within: what follows from it is
  * certified too, and mostly tighter. */
-static void tighten(const view_t *view,
-                    range_t *range,
+static void tighten(const nav_ace_view_t *view,
+                    nav_ace_range_t *range,
                     nav_spanned_t *spanned,
                     nav_ace_bounds_t *bounds)
 {
@@ -652,8 +632,8 @@ typedef enum
 } finding_t;
 
 /** Looks for a consistent range: roughly first, then closely. */
-static finding_t find_range(const view_t *view,
-                            range_t *range,
+static finding_t find_range(const nav_ace_view_t *view,
+                            nav_ace_range_t *range,
                             nav_spanned_t *spanned,
                             nav_ace_bounds_t *bounds)
 {
@@ -689,15 +669,15 @@ static finding_t find_range(const view_t *view,
 }
 
 /** Do bounds refuse a pose, but could they accept it if clearance were more by a gain? */
-static bool is_near_limit(const view_t *view, const nav_ace_bounds_t *bounds, double gain_m)
+static bool is_near_limit(const nav_ace_view_t *view, const nav_ace_bounds_t *bounds, double gain_m)
 {
     return (bounds->reason != (uint32_t) NAV_REASON_NONE) &&
            ((bounds->clearance_min_m + gain_m) >= view->limits.clearance_min_m);
 }
 
 /** Tightens bounds that refuse a pose, as long as what the last time has gained could be enough. */
-static void tighten_refused(const view_t *view,
-                            range_t *range,
+static void tighten_refused(const nav_ace_view_t *view,
+                            nav_ace_range_t *range,
                             nav_spanned_t *spanned,
                             nav_ace_bounds_t *bounds)
 {
@@ -711,15 +691,16 @@ static void tighten_refused(const view_t *view,
 }
 
 /** Bounds at the pose of a view. */
-static void bound_pose(const view_t *view, nav_ace_bounds_t *bounds)
+static void bound_pose(nav_ace_work_t *work, nav_ace_bounds_t *bounds)
 {
-    nav_spanned_t spanned;
-    range_t range;
-    const finding_t finding = find_range(view, &range, &spanned, bounds);
+    const nav_ace_view_t *view = &work->view;
+    nav_ace_range_t *range = &work->range;
+    nav_spanned_t *spanned = &work->spanned;
+    const finding_t finding = find_range(view, range, spanned, bounds);
     if (finding == NOT_STANDING)
     {
         /* which wheels and why */
-        drop_bounds(view, &range, bounds);
+        drop_bounds(view, range, bounds);
         bounds->reason = (bounds->wheel_unknown < 1.0) ? (uint32_t) NAV_REASON_UNEXPECTED
                                                        : (uint32_t) NAV_REASON_UNKNOWN;
     }
@@ -730,12 +711,22 @@ static void bound_pose(const view_t *view, nav_ace_bounds_t *bounds)
     }
     else
     {
-        bound_states(view, &range, finding == CERTIFIED, &spanned, bounds);
+        bound_states(view, range, finding == CERTIFIED, spanned, bounds);
         if (finding == CERTIFIED)
         {
-            tighten_refused(view, &range, &spanned, bounds);
+            tighten_refused(view, range, spanned, bounds);
         }
     }
+}
+
+/** Leaves no pointers behind: the work lies in a context, which may be copied. */
+static void forget_scene(nav_ace_view_t *view)
+{
+    view->params = NULL;
+    view->vehicle = NULL;
+    view->ground.surface = NULL;
+    view->ground.costmap = NULL;
+    view->ground.relief = NULL;
 }
 
 void nav_ace_evaluate(const nav_ace_scene_t *scene,
@@ -746,17 +737,19 @@ void nav_ace_evaluate(const nav_ace_scene_t *scene,
 {
     static const nav_ace_bounds_t UNKNOWN = {
         .wheel_unknown = 1.0, .belly_unknown = 1.0, .reason = (uint32_t) NAV_REASON_UNKNOWN};
-    view_t view = {.params = scene->params,
-                   .vehicle = scene->vehicle,
-                   .is_leaving = is_leaving,
-                   .limits = limits_of(scene->params, is_leaving),
-                   .uncertainty = *uncertainty};
+    nav_ace_view_t *view = &scene->work->view;
 
+    view->params = scene->params;
+    view->vehicle = scene->vehicle;
+    view->is_leaving = is_leaving;
+    view->limits = limits_of(scene->params, is_leaving);
+    view->uncertainty = *uncertainty;
     *bounds = UNKNOWN;
-    if (nav_ground_place(&view.ground, scene->surface, scene->costmap, scene->relief, pose))
+    if (nav_ground_place(&view->ground, scene->surface, scene->costmap, scene->relief, pose))
     {
-        bound_pose(&view, bounds);
+        bound_pose(scene->work, bounds);
     }
+    forget_scene(view);
 }
 
 nav_uncertainty_t nav_ace_grow(const nav_params_t *params,

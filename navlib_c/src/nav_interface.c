@@ -523,10 +523,10 @@ static void report_selection(const nav_ctx_t *ctx, double time_s, const nav_sele
     }
 }
 
-static nav_ace_scene_t ace_scene(const nav_ctx_t *ctx)
+static nav_ace_scene_t ace_scene(nav_ctx_t *ctx)
 {
-    const nav_ace_scene_t scene = {&ctx->params, &ctx->vehicle, &ctx->surface, &ctx->costmap,
-                                   &ctx->relief};
+    const nav_ace_scene_t scene = {&ctx->params,  &ctx->vehicle, &ctx->surface,
+                                   &ctx->costmap, &ctx->relief,  &ctx->ace_work};
     return scene;
 }
 
@@ -597,7 +597,7 @@ static nav_status_t check_evaluate_arc(const nav_ctx_t *ctx, const nav_evaluate_
 }
 
 /** Zones in every mode, terrain in Guarded and Avoid All. */
-static nav_reason_t evaluate_pose(const nav_ctx_t *ctx,
+static nav_reason_t evaluate_pose(nav_ctx_t *ctx,
                                   const nav_evaluate_arc_in_t *in,
                                   const nav_pose2_t *pose,
                                   double distance_m,
@@ -626,7 +626,7 @@ static nav_reason_t evaluate_pose(const nav_ctx_t *ctx,
     return reason;
 }
 
-static void evaluate_arc(const nav_ctx_t *ctx,
+static void evaluate_arc(nav_ctx_t *ctx,
                          const nav_evaluate_arc_in_t *in,
                          nav_evaluate_arc_out_t *out)
 {

@@ -16,7 +16,7 @@
 
 /* Lines of the grid that are looked at under a wheel. A wheel whose places lie across more of them is
  * given the heights of all ground around. */
-#define LINES_MAX 20U
+#define LINES_MAX 18U
 
 /* Places are taken in parts of at most this half length: the lower end is lost by less. */
 #define PART_HALF_M 0.05
@@ -450,13 +450,14 @@ static void raise_along_inner(const track_t *track, const line_t lines[2], doubl
     if (has_inner(track, &lines[0]) || has_inner(track, &lines[1]))
     {
         const double half_m = track->places->half_u_m + track->half_u_m;
-        const touch_t first = touch_at(track, lines[0].u_m, inner_high_m(track, &lines[0]));
-        const touch_t last = touch_at(track, lines[1].u_m, inner_high_m(track, &lines[1]));
-        const double over_m = nav_max(first.eta_m, last.eta_m);
-        const stretch_t forward = {first, last, 0.0, over_m};
-        const stretch_t backward = {last, first, 0.0, over_m};
-        raise_along(track, half_m, &forward, high_m);
-        raise_along(track, half_m, &backward, high_m);
+        stretch_t stretch = {.from = touch_at(track, lines[0].u_m, inner_high_m(track, &lines[0])),
+                             .to = touch_at(track, lines[1].u_m, inner_high_m(track, &lines[1]))};
+        const touch_t first = stretch.from;
+        stretch.over_m = nav_max(first.eta_m, stretch.to.eta_m);
+        raise_along(track, half_m, &stretch, high_m);
+        stretch.from = stretch.to;
+        stretch.to = first;
+        raise_along(track, half_m, &stretch, high_m);
     }
 }
 
@@ -493,26 +494,33 @@ static void raise_between(const track_t *track, int32_t major, double reach_m, d
 /** Highest hub over all places: looks closely first where the hub could be highest. */
 static double hub_high_m(const track_t *track, const profile_t *profile)
 {
-    double reach_m[LINES_MAX];
     double high_m = -NAV_ETA_NONE;
     double ceiling_max_m = -NAV_ETA_NONE;
+    double best_reach_m = 0.0;
     uint32_t best = 0U;
     for (uint32_t k = 0U; (k + 1U) < profile->count; k++)
     {
-        reach_m[k] = reach_between_m(track, profile, k);
-        const double ceiling_m = over_between_m(track, profile, k) + reach_m[k];
+        const double reach_m = reach_between_m(track, profile, k);
+        const double ceiling_m = over_between_m(track, profile, k) + reach_m;
         best = (ceiling_m > ceiling_max_m) ? k : best;
+        best_reach_m = (ceiling_m > ceiling_max_m) ? reach_m : best_reach_m;
         ceiling_max_m = nav_max(ceiling_max_m, ceiling_m);
     }
     if (profile->count > 1U)
     {
-        raise_between(track, profile->first + (int32_t) best, reach_m[best], &high_m);
+        raise_between(track, profile->first + (int32_t) best, best_reach_m, &high_m);
     }
     for (uint32_t k = 0U; (k + 1U) < profile->count; k++)
     {
-        if ((k != best) && ((over_between_m(track, profile, k) + reach_m[k]) > high_m))
+        const double over_m = over_between_m(track, profile, k);
+        /* no reach is longer than the radius */
+        if ((k != best) && ((over_m + track->radius_m) > high_m))
         {
-            raise_between(track, profile->first + (int32_t) k, reach_m[k], &high_m);
+            const double reach_m = reach_between_m(track, profile, k);
+            if ((over_m + reach_m) > high_m)
+            {
+                raise_between(track, profile->first + (int32_t) k, reach_m, &high_m);
+            }
         }
     }
     return high_m;

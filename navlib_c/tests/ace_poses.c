@@ -67,8 +67,8 @@ static nav_status_t map_ground(FILE *file)
 
 static void evaluate_poses(FILE *file)
 {
-    const nav_ace_scene_t scene = {&ctx.params, &ctx.vehicle, &ctx.surface, &ctx.costmap,
-                                   &ctx.relief};
+    const nav_ace_scene_t scene = {&ctx.params,  &ctx.vehicle, &ctx.surface,
+                                   &ctx.costmap, &ctx.relief,  &ctx.ace_work};
     double numbers[POSE_NUMBERS];
     unsigned pose_count = 0U;
     unsigned certified_count = 0U;

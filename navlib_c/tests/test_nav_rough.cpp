@@ -91,6 +91,15 @@ TEST(Rough, off_the_map_it_says_nothing)
     }
 }
 
+TEST(Rough, where_only_the_hub_of_a_leaning_wheel_could_be_off_the_map_it_says_nothing)
+{
+    Scene scene;
+    scene.show(flat);
+    const nav_ground_t ground = placed(scene, 0.0);
+    const nav_box_t places = {0.0, 14.6, 0.05, 0.05};
+    EXPECT_TRUE(is_nothing(nav_rough_interval(&ground, &places, 0.0, 0.5, RADIUS_M)));
+}
+
 TEST(Rough, a_stone_within_the_radius_beside_it_counts_as_under_it)
 {
     Scene scene;

@@ -54,6 +54,7 @@ def ace_bounds(navlib: Navlib, poses: Poses, uncertainty: npt.NDArray[np.float64
     scene.surface = ffi.addressof(ctx, "surface")
     scene.costmap = ffi.addressof(ctx, "costmap")
     scene.relief = ffi.addressof(ctx, "relief")
+    scene.work = ffi.addressof(ctx, "ace_work")
     bounds: Message = np.zeros(len(poses), dtype_of("nav_ace_bounds_t"))
     out = ffi.from_buffer("nav_ace_bounds_t[]", bounds, require_writable=True)
     pose_c = ffi.new("nav_pose2_t *")

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file nav_states.h
- * @brief Private to Navlib: the states that the linkage can take while each wheel's height lies within an
+ * @brief Used by ACE alone: the states that the linkage can take while each wheel's height lies within an
  * interval.
  */
 #ifndef NAV_STATES_H
