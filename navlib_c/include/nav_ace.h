@@ -16,8 +16,11 @@
 #include "nav_states.h"
 
 #define NAV_ACE_BOUNDS_FIELDS(S, A, N, M)                                                          \
-    S(double, clearance_min_m, "m", "lower bound of belly clearance along the body z axis")        \
-    S(double, wheel_drop_max_m, "m", "upper bound of the height span in a wheel's box")            \
+    S(double, clearance_min_m, "m",                                                                \
+      "lower bound of belly clearance along the body z axis, exact only near its limit")           \
+    S(double, wheel_drop_max_m, "m",                                                               \
+      "upper bound of the height span in a wheel's box, from whole costmap cells while these "     \
+      "keep the limit")                                                                            \
     S(double, tilt_max_rad, "rad", "upper bound of the tilt against gravity")                      \
     S(double, z_min_site_m, "m", "highest the ROVER origin can be (z is down)")                    \
     S(double, z_max_site_m, "m", "lowest the ROVER origin can be")                                 \
@@ -34,7 +37,9 @@
     S(double, wheel_unknown, "1", "largest unknown share of a wheel box")                          \
     S(double, belly_unknown, "1", "unknown share of the belly box")                                \
     S(uint32_t, reason, "1", "nav_reason_t: NONE when every bound is within its limit")            \
-    S(uint32_t, is_certified, "1", "1 when the bounds are consistent with the growth they assume")
+    S(uint32_t, is_certified, "1",                                                                 \
+      "1 when the bounds are consistent with the growth they assume; 0 also where a wheel drop "   \
+      "alone refused")
 NAV_RECORD(NAV_ACE_BOUNDS_FIELDS, nav_ace_bounds_t);
 
 /** The states an attempt assumes the rover stays within. Bounds found from such a range that lie

@@ -48,10 +48,13 @@ static const double CLOSE_FROM_M[ATTEMPTS] = {NAV_ETA_NONE, 0.1, 0.05, 0.0, 0.0,
 #define SUSPECT_M 0.15
 #define DROP_PART 0.3
 
-/* Bounds that refuse a pose are tightened this often at most, the first time where clearance is less than
- * this from its limit. */
+/* Bounds that refuse a pose are tightened this often at most, while clearance and wheel drop are no further
+ * from their limits than this the first time, then than what the last time has gained, and than this. */
 #define TIGHTENINGS 3U
-#define FIRST_GAIN_M 0.05
+#define FIRST_GAIN_M 0.1
+#define FIRST_DROP_GAIN_M 0.4
+#define LEAST_GAIN_M 0.02
+#define LEAST_DROP_GAIN_M 0.05
 
 /* Half widths that a range has at least: m, and rad for roll, pitch, rocker, bogies. Between walls a
  * rover can stand in more than one way; a range holds all of those that are near. */
@@ -668,11 +671,21 @@ static finding_t find_range(const nav_ace_view_t *view,
     return finding;
 }
 
-/** Do bounds refuse a pose, but could they accept it if clearance were more by a gain? */
-static bool is_near_limit(const nav_ace_view_t *view, const nav_ace_bounds_t *bounds, double gain_m)
+/** What tightening has gained, or could. */
+typedef struct
+{
+    double clearance_m;
+    double drop_m;
+} gain_t;
+
+/** Do bounds refuse a pose, but could they accept it with a gain? */
+static bool is_near_limits(const nav_ace_view_t *view,
+                           const nav_ace_bounds_t *bounds,
+                           const gain_t *gain)
 {
     return (bounds->reason != (uint32_t) NAV_REASON_NONE) &&
-           ((bounds->clearance_min_m + gain_m) >= view->limits.clearance_min_m);
+           ((bounds->clearance_min_m + gain->clearance_m) >= view->limits.clearance_min_m) &&
+           ((bounds->wheel_drop_max_m - gain->drop_m) <= view->limits.wheel_drop_max_m);
 }
 
 /** Tightens bounds that refuse a pose, as long as what the last time has gained could be enough. */
@@ -681,12 +694,16 @@ static void tighten_refused(const nav_ace_view_t *view,
                             nav_spanned_t *spanned,
                             nav_ace_bounds_t *bounds)
 {
-    bool is_worth_it = is_near_limit(view, bounds, FIRST_GAIN_M);
+    gain_t gain = {FIRST_GAIN_M, FIRST_DROP_GAIN_M};
+    bool is_worth_it = is_near_limits(view, bounds, &gain);
     for (uint32_t k = 0U; (k < TIGHTENINGS) && is_worth_it; k++)
     {
-        const double before_m = bounds->clearance_min_m;
+        const double clearance_m = bounds->clearance_min_m;
+        const double drop_m = bounds->wheel_drop_max_m;
         tighten(view, range, spanned, bounds);
-        is_worth_it = is_near_limit(view, bounds, bounds->clearance_min_m - before_m);
+        gain.clearance_m = nav_max(bounds->clearance_min_m - clearance_m, LEAST_GAIN_M);
+        gain.drop_m = nav_max(drop_m - bounds->wheel_drop_max_m, LEAST_DROP_GAIN_M);
+        is_worth_it = is_near_limits(view, bounds, &gain);
     }
 }
 

@@ -16,7 +16,7 @@
 
 /* Lines of the grid that are looked at under a wheel. A wheel whose places lie across more of them is
  * given the heights of all ground around. */
-#define LINES_MAX 18U
+#define LINES_MAX 20U
 
 /* Places are taken in parts of at most this half length: the lower end is lost by less. */
 #define PART_HALF_M 0.05
@@ -47,13 +47,13 @@ static line_t line_of(const nav_ground_t *ground, const nav_box_t *box, int32_t 
     return line;
 }
 
-/** Lines that a box touches. */
-static nav_indices_t lines_across(const nav_lanes_t *lanes, const nav_box_t *box)
+/** Lines that a box touches, made longer at both ends. */
+static nav_indices_t lines_across(const nav_lanes_t *lanes, const nav_box_t *box, double more_u_m)
 {
     const double middle =
         lanes->major + (lanes->major_per_u * box->u_m) + (lanes->major_per_v * box->v_m);
-    const double half =
-        (fabs(lanes->major_per_u) * box->half_u_m) + (fabs(lanes->major_per_v) * box->half_v_m);
+    const double half = (fabs(lanes->major_per_u) * (box->half_u_m + more_u_m)) +
+                        (fabs(lanes->major_per_v) * box->half_v_m);
     return nav_ground_between(middle - half, middle + half);
 }
 
@@ -163,7 +163,7 @@ nav_span_t nav_wheel_span(const nav_ground_t *ground, const nav_footprint_t *foo
 {
     const nav_lanes_t *lanes = &ground->lanes;
     const nav_box_t feet = nav_wheel_feet(ground, footprint);
-    const nav_indices_t lines = lines_across(lanes, &feet);
+    const nav_indices_t lines = lines_across(lanes, &feet, 0.0);
     nav_span_t span = {{NAV_ETA_NONE, -NAV_ETA_NONE}, 0U, 0U};
 
     for (int32_t major = lines.first; major <= lines.last; major++)
@@ -617,12 +617,11 @@ nav_interval_t nav_wheel_interval(const nav_ground_t *ground,
                            half_minor,
                            half_minor * fabs(lanes->u_per_minor),
                            (fabs(lanes->minor_per_major) > PARALLEL) ? 1 : 0};
-    nav_box_t touched = *places;
     profile_t profile;
 
     /* and one line more on either side: what is touched can lie between two */
-    touched.half_u_m += touch_reach_m(ground, above, radius_m) + fabs(lanes->u_per_major);
-    nav_indices_t majors = lines_across(lanes, &touched);
+    nav_indices_t majors = lines_across(
+        lanes, places, touch_reach_m(ground, above, radius_m) + fabs(lanes->u_per_major));
     (void) cut_to_map(&majors);
     nav_interval_t hub = {above->low_m * ground->cos_slope, above->high_m * ground->cos_slope};
     if ((majors.last - majors.first) < (int32_t) LINES_MAX)
