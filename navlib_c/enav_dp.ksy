@@ -279,10 +279,10 @@ types:
         seq:
           - id: clearance_min_m
             type: f8
-            doc: 'm, lower bound of belly clearance along the body z axis'
+            doc: 'm, lower bound of belly clearance along the body z axis, exact only near its limit'
           - id: wheel_drop_max_m
             type: f8
-            doc: 'm, upper bound of the height span in a wheel''s box'
+            doc: 'm, upper bound of the height span in a wheel''s box, from whole costmap cells while these keep the limit'
           - id: tilt_max_rad
             type: f8
             doc: 'rad, upper bound of the tilt against gravity'
@@ -333,7 +333,7 @@ types:
             doc: 'nav_reason_t: NONE when every bound is within its limit'
           - id: is_certified
             type: u4
-            doc: '1 when the bounds are consistent with the growth they assume'
+            doc: '1 when the bounds are consistent with the growth they assume; 0 also where a wheel drop alone refused'
       nav_evr_t:
         seq:
           - id: time_s

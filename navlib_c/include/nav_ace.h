@@ -13,12 +13,14 @@
 #define NAV_ACE_H
 
 #include "nav_arc.h"
-#include "nav_relief.h"
-#include "nav_vehicle.h"
+#include "nav_states.h"
 
 #define NAV_ACE_BOUNDS_FIELDS(S, A, N, M)                                                          \
-    S(double, clearance_min_m, "m", "lower bound of belly clearance along the body z axis")        \
-    S(double, wheel_drop_max_m, "m", "upper bound of the height span in a wheel's box")            \
+    S(double, clearance_min_m, "m",                                                                \
+      "lower bound of belly clearance along the body z axis, exact only near its limit")           \
+    S(double, wheel_drop_max_m, "m",                                                               \
+      "upper bound of the height span in a wheel's box, from whole costmap cells while these "     \
+      "keep the limit")                                                                            \
     S(double, tilt_max_rad, "rad", "upper bound of the tilt against gravity")                      \
     S(double, z_min_site_m, "m", "highest the ROVER origin can be (z is down)")                    \
     S(double, z_max_site_m, "m", "lowest the ROVER origin can be")                                 \
@@ -35,10 +37,56 @@
     S(double, wheel_unknown, "1", "largest unknown share of a wheel box")                          \
     S(double, belly_unknown, "1", "unknown share of the belly box")                                \
     S(uint32_t, reason, "1", "nav_reason_t: NONE when every bound is within its limit")            \
-    S(uint32_t, is_certified, "1", "1 when the bounds are consistent with the growth they assume")
+    S(uint32_t, is_certified, "1",                                                                 \
+      "1 when the bounds are consistent with the growth they assume; 0 also where a wheel drop "   \
+      "alone refused")
 NAV_RECORD(NAV_ACE_BOUNDS_FIELDS, nav_ace_bounds_t);
 
-/** What ACE reads; all of it stays unchanged. */
+/** The states an attempt assumes the rover stays within. Bounds found from such a range that lie
+ * inside it are certified: the map from states to states then has its fixed point, the settled
+ * rover, inside (Brouwer). */
+typedef struct
+{
+    double middle[NAV_LINKAGE_STATES];
+    double half[NAV_LINKAGE_STATES];
+    double forward_m[NAV_WHEELS]; /* places of the wheels in the middle state */
+    double right_m[NAV_WHEELS];
+    double height_m[NAV_WHEELS];
+    double close_from_m; /* wheels whose rough heights span more are looked at closely */
+    double widest_m;     /* largest span of rough heights */
+    bool is_bounded;     /* it led to states, and no wheel's places have grown to the limit */
+} nav_ace_range_t;
+
+/** The limits that bounds are held against. */
+typedef struct
+{
+    double clearance_min_m;
+    double tilt_max_rad;
+    double rocker_max_rad;
+    double bogie_max_rad;
+    double wheel_drop_max_m;
+} nav_ace_limits_t;
+
+/** All that stays the same during one evaluation. */
+typedef struct
+{
+    const nav_params_t *params;
+    const nav_vehicle_t *vehicle;
+    bool is_leaving;
+    nav_ace_limits_t limits;
+    nav_uncertainty_t uncertainty;
+    nav_ground_t ground;
+} nav_ace_view_t;
+
+/** What an evaluation works on, too large for the stack. It means nothing between evaluations. */
+typedef struct
+{
+    nav_ace_view_t view;
+    nav_ace_range_t range;
+    nav_spanned_t spanned;
+} nav_ace_work_t;
+
+/** What ACE reads, and what it works on. */
 typedef struct
 {
     const nav_params_t *params;
@@ -46,20 +94,25 @@ typedef struct
     const nav_surface_t *surface;
     const nav_costmap_t *costmap; /* for the planes only */
     const nav_relief_t *relief;
+    nav_ace_work_t *work;
 } nav_ace_scene_t;
 
 /**
- * Bounds at one pose.
- * @param position_m, yaw_rad  uncertainty: the rover is within this radius and yaw error of the pose
+ * Bounds at one pose, and the first limit that they exceed. They are no tighter than the answer needs: of an
+ * accepted pose they are within the limits, but wheel drop and clearance may be far better than they say;
+ * of a pose refused for a wheel drop the others may be missing, which is_certified 0 tells.
+ * @param uncertainty  the rover is within this radius and yaw error of the pose
+ * @param is_leaving   true: the leave limits, for a rover that finds no other way on
  */
 void nav_ace_evaluate(const nav_ace_scene_t *scene,
                       const nav_pose2_t *pose,
                       const nav_uncertainty_t *uncertainty,
+                      bool is_leaving,
                       nav_ace_bounds_t *bounds);
 
 /**
  * The first limit that bounds exceed, NONE when there is none.
- * @param is_leaving  true: the leave limits, for a rover that finds no other way on
+ * @param is_leaving  true: the leave limits
  */
 nav_reason_t nav_ace_refuse(const nav_params_t *params,
                             const nav_ace_bounds_t *bounds,

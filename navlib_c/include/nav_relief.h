@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file nav_relief.h
- * @brief Highest and lowest ground of each costmap cell against the plane fitted there.
+ * @brief Highest and lowest ground of each costmap cell against the plane fitted there, and how high a
+ * ball as large as a wheel rests over each heightmap cell.
  *
  * ACE asks it first: where even the highest and lowest ground of the cells around a wheel or under the
- * belly is harmless, single heightmap cells need not be looked at.
+ * belly is harmless, and where a ball rests low enough, it need not look closer.
  */
 #ifndef NAV_RELIEF_H
 #define NAV_RELIEF_H
@@ -22,6 +23,10 @@ typedef struct
 typedef struct
 {
     nav_relief_cell_t cells[NAV_COSTMAP_CELLS]; /* in the order of the costmap's */
+    /* of the surface's cells, down: the highest that the lowest point of a wheel can stand whose hub is
+     * over one of four neighbours or between them, of their four numbers the least;
+     * -NAV_SURFACE_UNKNOWN_M where not all ground nearby is known */
+    float rest_z_site_m[NAV_HEIGHTMAP_CELLS];
 } nav_relief_t;
 
 /**
@@ -32,5 +37,8 @@ void nav_relief_update(nav_relief_t *relief,
                        const nav_costmap_t *costmap,
                        const nav_costmap_state_t *state,
                        const nav_surface_t *surface);
+
+/** Lets balls of the wheels' radius rest on all of the surface. */
+void nav_relief_rest(nav_relief_t *relief, const nav_surface_t *surface, double radius_m);
 
 #endif

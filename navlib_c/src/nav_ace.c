@@ -11,11 +11,13 @@
 #include "nav_ace.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #include "nav_belly.h"
 #include "nav_ground.h"
 #include "nav_math.h"
 #include "nav_minmax.h"
+#include "nav_rough.h"
 #include "nav_wheel.h"
 
 /* Attempts to find a range of states that is consistent: first around where the nearest cells put the
@@ -35,31 +37,24 @@
 /* From a point of the surface to the cells it hangs on, on any heading: a diagonal. */
 #define CELLS_AROUND 1.42
 
-/* Heights of wheels are solved for to this; what is left over widens their intervals. */
-#define SETTLE_TOLERANCE_M 5.0e-5
-
-/* Single heightmap cells are looked at where coarse heights exceed this share of the limit of wheel
- * drop, or would move a wheel's places on a slope by more than this. */
-#define COARSE_DROP 0.5
+/* Single heightmap cells are looked at where coarse heights would move a wheel's places on a slope by
+ * more than this. */
 #define COARSE_SHIFT_M 0.01
 
-/* Largest second-order error of the linearized linkage per squared half width of the widest wheel
- * interval, over all states within +/-0.35 m of wheel height; measured, and enlarged by a quarter. */
-static const double CURVATURE[NAV_LINKAGE_STATES] = {0.21, 0.15, 0.29, 0.33, 3.2, 3.2};
-#define CURVATURE_CLEARANCE 0.47
+/* Attempt by attempt: wheels whose rough heights span more are looked at closely. */
+static const double CLOSE_FROM_M[ATTEMPTS] = {NAV_ETA_NONE, 0.1, 0.05, 0.0, 0.0, 0.0};
 
-/** The states an attempt assumes the rover stays within. Bounds found from such a range that lie
- * inside it are certified: the map from states to states then has its fixed point, the settled
- * rover, inside (Brouwer). */
-typedef struct
-{
-    double middle[NAV_LINKAGE_STATES];
-    double half[NAV_LINKAGE_STATES];
-    double forward_m[NAV_WHEELS]; /* places of the wheels in the middle state */
-    double right_m[NAV_WHEELS];
-    double height_m[NAV_WHEELS];
-    bool is_bounded; /* it led to states, and no wheel's places have grown to the limit */
-} range_t;
+/* Where rough heights span more than this, wheel drop is looked at first, within this part of the range. */
+#define SUSPECT_M 0.15
+#define DROP_PART 0.3
+
+/* Bounds that refuse a pose are tightened this often at most, while clearance and wheel drop are no further
+ * from their limits than this the first time, then than what the last time has gained, and than this. */
+#define TIGHTENINGS 3U
+#define FIRST_GAIN_M 0.1
+#define FIRST_DROP_GAIN_M 0.4
+#define LEAST_GAIN_M 0.02
+#define LEAST_DROP_GAIN_M 0.05
 
 /* Half widths that a range has at least: m, and rad for roll, pitch, rocker, bogies. Between walls a
  * rover can stand in more than one way; a range holds all of those that are near. */
@@ -72,15 +67,6 @@ static const double LEAST_HALF[NAV_LINKAGE_STATES] = {0.05, 0.04, 0.05, 0.04, 0.
 
 /* The nearest cells say little where they are this far off the plane. */
 #define FIRST_HEIGHT_MAX_M 0.3
-
-/** All that stays the same during one evaluation. */
-typedef struct
-{
-    const nav_params_t *params;
-    const nav_vehicle_t *vehicle;
-    nav_uncertainty_t uncertainty;
-    nav_ground_t ground;
-} view_t;
 
 /** How far a part of the rover can be from its nominal place in the plane. */
 typedef struct
@@ -104,16 +90,32 @@ static double squared(double x)
     return x * x;
 }
 
+static nav_ace_limits_t limits_of(const nav_params_t *params, bool is_leaving)
+{
+    const nav_ace_limits_t planned = {params->clearance_min_m, params->tilt_max_rad,
+                                      params->rocker_max_rad, params->bogie_max_rad,
+                                      params->wheel_drop_max_m};
+    /* never stricter than what is planned with */
+    const nav_ace_limits_t leaving = {
+        nav_min(params->leave_clearance_min_m, params->clearance_min_m),
+        nav_max(params->leave_tilt_max_rad, params->tilt_max_rad),
+        nav_max(params->leave_rocker_max_rad, params->rocker_max_rad),
+        nav_max(params->leave_bogie_max_rad, params->bogie_max_rad),
+        nav_max(params->leave_wheel_drop_max_m, params->wheel_drop_max_m),
+    };
+    return is_leaving ? leaving : planned;
+}
+
 /* ------------------------------------------------------------------ places of the wheels */
 
 /** The turn in the plane that keeps a pitched rover's yaw, which is measured in the horizontal. */
-static double turn_of_pitch(const view_t *view, double pitch_rad)
+static double turn_of_pitch(const nav_ace_view_t *view, double pitch_rad)
 {
     return pitch_rad * view->ground.rise_right;
 }
 
 /** Growth that all parts share: uncertainty, and what slopes make of the range. */
-static common_t common_of(const view_t *view, const double middle[], const double half[])
+static common_t common_of(const nav_ace_view_t *view, const double middle[], const double half[])
 {
     const double p = view->uncertainty.position_m;
     const double lift_m = half[NAV_LINKAGE_HEIGHT];
@@ -140,7 +142,9 @@ static growth_t growth_of(const common_t *common, double u_m, double v_m)
 }
 
 /** How far the suspension swings a hub fore and aft of its place in the middle of a range. */
-static double wheel_swing_m(const nav_vehicle_t *vehicle, const range_t *range, uint32_t wheel)
+static double wheel_swing_m(const nav_vehicle_t *vehicle,
+                            const nav_ace_range_t *range,
+                            uint32_t wheel)
 {
     const double u_m = vehicle->hub_x_m[wheel];
     const double pivot_m = vehicle->rocker_pivot_x_m;
@@ -168,8 +172,8 @@ static double wheel_swing_m(const nav_vehicle_t *vehicle, const range_t *range, 
     return swing_m;
 }
 
-static growth_t growth_wheel(const view_t *view,
-                             const range_t *range,
+static growth_t growth_wheel(const nav_ace_view_t *view,
+                             const nav_ace_range_t *range,
                              const common_t *common,
                              uint32_t wheel)
 {
@@ -189,7 +193,10 @@ static growth_t growth_wheel(const view_t *view,
 }
 
 /** The middle of a wheel's places, in the plane frame. */
-static void wheel_middle(const view_t *view, const range_t *range, uint32_t wheel, nav_box_t *box)
+static void wheel_middle(const nav_ace_view_t *view,
+                         const nav_ace_range_t *range,
+                         uint32_t wheel,
+                         nav_box_t *box)
 {
     const double turn = turn_of_pitch(view, range->middle[NAV_LINKAGE_PITCH]);
     const double lifted_m = range->middle[NAV_LINKAGE_HEIGHT] / view->ground.cos_slope;
@@ -199,8 +206,8 @@ static void wheel_middle(const view_t *view, const range_t *range, uint32_t whee
     box->v_m = (lifted_m * view->ground.right_up) + (v_m + (turn * u_m));
 }
 
-static nav_footprint_t wheel_footprint(const view_t *view,
-                                       const range_t *range,
+static nav_footprint_t wheel_footprint(const nav_ace_view_t *view,
+                                       const nav_ace_range_t *range,
                                        const common_t *common,
                                        const growth_t *growth,
                                        uint32_t wheel)
@@ -224,7 +231,7 @@ static nav_footprint_t wheel_footprint(const view_t *view,
 /* ------------------------------------------------------------------ heights of the wheels */
 
 /** The ground in a wheel's box: coarse where that is enough, cell by cell where it is not. */
-static nav_span_t wheel_ground(const view_t *view,
+static nav_span_t wheel_ground(const nav_ace_view_t *view,
                                const nav_footprint_t *footprint,
                                double coarse_span_max_m)
 {
@@ -243,12 +250,15 @@ static bool is_any_known(const nav_span_t *span)
     return span->above.high_m >= span->above.low_m;
 }
 
-/** Heights of one wheel. @return false when nothing is known under it */
-static bool wheel_hub(
-    const view_t *view, range_t *range, const common_t *common, uint32_t wheel, nav_interval_t *hub)
+/** Heights of one wheel by its disc. @return false when nothing is known under it */
+static bool wheel_closely(const nav_ace_view_t *view,
+                          const nav_ace_range_t *range,
+                          const common_t *common,
+                          const growth_t *growth,
+                          uint32_t wheel,
+                          nav_interval_t *hub)
 {
-    const growth_t growth = growth_wheel(view, range, common, wheel);
-    nav_footprint_t footprint = wheel_footprint(view, range, common, &growth, wheel);
+    nav_footprint_t footprint = wheel_footprint(view, range, common, growth, wheel);
     const double right_up = view->ground.right_up;
     const double around_m = CELLS_AROUND * view->ground.surface->cell_m;
     /* on a slope the heights around move the feet of what a wheel stands on */
@@ -259,25 +269,50 @@ static bool wheel_hub(
     footprint.box.half_v_m += around_m;
     const nav_span_t span = wheel_ground(view, &footprint, coarse_span_max_m);
     const bool is_known = is_any_known(&span);
-    range->is_bounded =
-        range->is_bounded && (growth.u_m < GROWTH_MAX_M) && (growth.v_m < GROWTH_MAX_M);
     if (is_known)
     {
         const double shift_m = 0.5 * (span.above.high_m + span.above.low_m) * right_up;
         const double reach_m = 0.5 * (span.above.high_m - span.above.low_m) * fabs(right_up);
-        const nav_box_t places = {footprint.box.u_m, footprint.box.v_m - shift_m, growth.u_m,
-                                  growth.v_m + reach_m};
+        const nav_box_t places = {footprint.box.u_m, footprint.box.v_m - shift_m, growth->u_m,
+                                  growth->v_m + reach_m};
         *hub =
             nav_wheel_interval(&view->ground, &places, &span.above, view->params->wheel_radius_m);
     }
     return is_known;
 }
 
+/** Heights of one wheel: rough where they span little enough. @return false when nothing is known under
+ * it */
+static bool wheel_hub(const nav_ace_view_t *view,
+                      nav_ace_range_t *range,
+                      const common_t *common,
+                      uint32_t wheel,
+                      nav_interval_t *hub)
+{
+    const growth_t growth = growth_wheel(view, range, common, wheel);
+    const double lean = fabs(range->middle[NAV_LINKAGE_ROLL]) + range->half[NAV_LINKAGE_ROLL];
+    nav_box_t places = {0.0, 0.0, growth.u_m, growth.v_m};
+    bool is_known = true;
+    wheel_middle(view, range, wheel, &places);
+    *hub = nav_rough_interval(&view->ground, &places, range->height_m[wheel], lean,
+                              view->params->wheel_radius_m);
+    range->widest_m = nav_max(range->widest_m, hub->high_m - hub->low_m);
+    if ((hub->high_m - hub->low_m) > range->close_from_m)
+    {
+        is_known = wheel_closely(view, range, common, &growth, wheel, hub);
+    }
+    range->is_bounded =
+        range->is_bounded && (growth.u_m < GROWTH_MAX_M) && (growth.v_m < GROWTH_MAX_M);
+    return is_known;
+}
+
 /** Wheel drop and unknown share over all wheels. */
-static void drop_bounds(const view_t *view, const range_t *range, nav_ace_bounds_t *bounds)
+static void drop_bounds(const nav_ace_view_t *view,
+                        const nav_ace_range_t *range,
+                        nav_ace_bounds_t *bounds)
 {
     const common_t common = common_of(view, range->middle, range->half);
-    const double coarse_span_max_m = COARSE_DROP * view->params->wheel_drop_max_m;
+    const double coarse_span_max_m = view->limits.wheel_drop_max_m;
     bounds->wheel_drop_max_m = 0.0;
     bounds->wheel_unknown = 0.0;
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
@@ -296,66 +331,8 @@ static void drop_bounds(const view_t *view, const range_t *range, nav_ace_bounds
 
 /* ------------------------------------------------------------------ states */
 
-/** Half widths of the states from those of the wheels. */
-static void spread_states(double wheel_radius_m, nav_spanned_t *spanned)
-{
-    double gain[NAV_LINKAGE_STATES];
-    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
-    {
-        double half = CURVATURE[k] * spanned->curved_m2;
-        gain[k] = 0.0;
-        for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
-        {
-            const double per_wheel = fabs(spanned->linkage.inverse[k][wheel]);
-            half += per_wheel * spanned->wheel_half_m[wheel];
-            gain[k] += per_wheel;
-        }
-        spanned->half[k] = half;
-    }
-    /* a wheel that leans with the body stands lower over what it touches, by this at most */
-    const double roll_far =
-        fabs(spanned->linkage.state[NAV_LINKAGE_ROLL]) + spanned->half[NAV_LINKAGE_ROLL];
-    const double lean_m = 0.5 * wheel_radius_m * squared(roll_far);
-    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
-    {
-        spanned->half[k] += gain[k] * lean_m;
-    }
-    for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
-    {
-        spanned->wheel_half_m[wheel] += lean_m;
-    }
-}
-
-/** Solves the linkage for the middles and spans the intervals. @return false when unsolvable */
-static bool span_states(const view_t *view,
-                        const range_t *range,
-                        const nav_interval_t hubs[NAV_WHEELS],
-                        nav_spanned_t *spanned)
-{
-    double widest_m = 0.0;
-    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
-    {
-        spanned->linkage.state[k] = range->middle[k];
-    }
-    for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
-    {
-        spanned->wheel_middle_m[wheel] = 0.5 * (hubs[wheel].low_m + hubs[wheel].high_m);
-    }
-    const bool is_solved = nav_vehicle_settle(view->vehicle, spanned->wheel_middle_m,
-                                              SETTLE_TOLERANCE_M, &spanned->linkage);
-    for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
-    {
-        spanned->wheel_half_m[wheel] =
-            (0.5 * (hubs[wheel].high_m - hubs[wheel].low_m)) + spanned->linkage.residual_max_m;
-        widest_m = nav_max(widest_m, spanned->wheel_half_m[wheel]);
-    }
-    spanned->curved_m2 = widest_m * (widest_m + (2.0 * spanned->linkage.moved_max_m));
-    spread_states(view->params->wheel_radius_m, spanned);
-    return is_solved;
-}
-
 /** Does what was found lie inside the range that its growth assumed? */
-static bool is_consistent(const nav_spanned_t *spanned, const range_t *range)
+static bool is_consistent(const nav_spanned_t *spanned, const nav_ace_range_t *range)
 {
     bool is_inside = range->is_bounded;
     for (uint32_t k = 0U; (k < (uint32_t) NAV_LINKAGE_STATES) && is_inside; k++)
@@ -367,7 +344,7 @@ static bool is_consistent(const nav_spanned_t *spanned, const range_t *range)
 }
 
 /** The first range: around where the cells nearest to the wheels' places put them. */
-static void range_first(const view_t *view, range_t *range)
+static void range_first(const nav_ace_view_t *view, nav_ace_range_t *range)
 {
     const nav_vehicle_t *vehicle = view->vehicle;
     for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
@@ -389,11 +366,11 @@ static void range_first(const view_t *view, range_t *range)
 }
 
 /** A range around what was found, no narrower than it, nor than the least half widths. */
-static void range_around(const view_t *view,
+static void range_around(const nav_ace_view_t *view,
                          const nav_spanned_t *spanned,
                          double widening,
                          const double least_half[NAV_LINKAGE_STATES],
-                         range_t *range)
+                         nav_ace_range_t *range)
 {
     for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
     {
@@ -410,7 +387,7 @@ static void range_around(const view_t *view,
 /* ------------------------------------------------------------------ bounds */
 
 /** Attitude against gravity from the attitude against the plane. */
-static void attitude_bounds(const view_t *view,
+static void attitude_bounds(const nav_ace_view_t *view,
                             const nav_spanned_t *spanned,
                             nav_ace_bounds_t *bounds)
 {
@@ -473,7 +450,7 @@ static void suspension_bounds(const nav_spanned_t *spanned, nav_ace_bounds_t *bo
 }
 
 /** How far the belly can be from its nominal place in the plane, and from what stands under it. */
-static growth_t growth_belly(const view_t *view, const nav_spanned_t *spanned)
+static growth_t growth_belly(const nav_ace_view_t *view, const nav_spanned_t *spanned)
 {
     const nav_params_t *params = view->params;
     const double far_m = nav_max(fabs(params->belly_front_x_m), fabs(params->belly_rear_x_m));
@@ -493,7 +470,9 @@ static growth_t growth_belly(const view_t *view, const nav_spanned_t *spanned)
 }
 
 /** Lower bound of clearance and unknown share of the belly box. */
-static void belly_bounds(const view_t *view, const nav_spanned_t *spanned, nav_ace_bounds_t *bounds)
+static void belly_bounds(const nav_ace_view_t *view,
+                         const nav_spanned_t *spanned,
+                         nav_ace_bounds_t *bounds)
 {
     const nav_params_t *params = view->params;
     const double roll =
@@ -501,6 +480,8 @@ static void belly_bounds(const view_t *view, const nav_spanned_t *spanned, nav_a
     const double pitch =
         fabs(spanned->linkage.state[NAV_LINKAGE_PITCH]) + spanned->half[NAV_LINKAGE_PITCH];
     const growth_t growth = growth_belly(view, spanned);
+    /* the belly may stand elsewhere in its box */
+    const double less_m = (pitch * growth.u_m) + (roll * growth.v_m) + spanned->curved_m;
     const nav_box_t box = {
         0.5 * (params->belly_front_x_m + params->belly_rear_x_m),
         0.0,
@@ -509,41 +490,15 @@ static void belly_bounds(const view_t *view, const nav_spanned_t *spanned, nav_a
     };
     const nav_clearance_t clearance =
         nav_belly_clearance(&view->ground, spanned, &box, params->belly_height_m,
-                            turn_of_pitch(view, spanned->linkage.state[NAV_LINKAGE_PITCH]));
-    /* the belly may stand elsewhere in its box */
-    bounds->clearance_min_m = clearance.clearance_min_m - (pitch * growth.u_m) -
-                              (roll * growth.v_m) - (CURVATURE_CLEARANCE * spanned->curved_m2);
+                            turn_of_pitch(view, spanned->linkage.state[NAV_LINKAGE_PITCH]),
+                            view->limits.clearance_min_m + less_m);
+    bounds->clearance_min_m = clearance.clearance_min_m - less_m;
     bounds->belly_unknown = clearance.unknown;
 }
 
 static bool is_beyond(double low, double high, double limit)
 {
     return (low < -limit) || (high > limit);
-}
-
-/** The limits that ACE holds bounds against. */
-typedef struct
-{
-    double clearance_min_m;
-    double tilt_max_rad;
-    double rocker_max_rad;
-    double bogie_max_rad;
-    double wheel_drop_max_m;
-} limits_t;
-
-static limits_t limits_of(const nav_params_t *params, bool is_leaving)
-{
-    const limits_t planned = {params->clearance_min_m, params->tilt_max_rad, params->rocker_max_rad,
-                              params->bogie_max_rad, params->wheel_drop_max_m};
-    /* never stricter than what is planned with */
-    const limits_t leaving = {
-        nav_min(params->leave_clearance_min_m, params->clearance_min_m),
-        nav_max(params->leave_tilt_max_rad, params->tilt_max_rad),
-        nav_max(params->leave_rocker_max_rad, params->rocker_max_rad),
-        nav_max(params->leave_bogie_max_rad, params->bogie_max_rad),
-        nav_max(params->leave_wheel_drop_max_m, params->wheel_drop_max_m),
-    };
-    return is_leaving ? leaving : planned;
 }
 
 static bool is_bogie_beyond(const nav_ace_bounds_t *bounds, double limit_rad)
@@ -556,7 +511,7 @@ nav_reason_t nav_ace_refuse(const nav_params_t *params,
                             const nav_ace_bounds_t *bounds,
                             bool is_leaving)
 {
-    const limits_t limits = limits_of(params, is_leaving);
+    const nav_ace_limits_t limits = limits_of(params, is_leaving);
     nav_reason_t reason = NAV_REASON_NONE;
     if ((bounds->wheel_unknown > params->wheel_unknown_max) ||
         (bounds->belly_unknown > params->belly_unknown_max))
@@ -591,25 +546,54 @@ nav_reason_t nav_ace_refuse(const nav_params_t *params,
     return reason;
 }
 
+/** Does a wheel drop within a part of the first range refuse the pose? Then hardly any range does not. */
+static bool is_dropping(const nav_ace_view_t *view,
+                        nav_ace_range_t *range,
+                        nav_ace_bounds_t *bounds)
+{
+    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
+    {
+        range->half[k] = DROP_PART * LEAST_HALF[k];
+    }
+    drop_bounds(view, range, bounds);
+    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
+    {
+        range->half[k] = LEAST_HALF[k];
+    }
+    return (bounds->wheel_unknown <= view->params->wheel_unknown_max) &&
+           (bounds->wheel_drop_max_m > view->limits.wheel_drop_max_m);
+}
+
 /** The states that a range leads to. @return false when a wheel has nothing known to stand on */
-static bool span_range(const view_t *view, range_t *range, nav_spanned_t *spanned)
+static bool span_range(const nav_ace_view_t *view, nav_ace_range_t *range, nav_spanned_t *spanned)
 {
     const common_t common = common_of(view, range->middle, range->half);
-    nav_interval_t hubs[NAV_WHEELS];
+    nav_interval_t heights[NAV_WHEELS];
     bool is_known = true;
+    range->widest_m = 0.0;
     range->is_bounded = true;
     for (uint32_t wheel = 0U; (wheel < (uint32_t) NAV_WHEELS) && is_known; wheel++)
     {
-        is_known = wheel_hub(view, range, &common, wheel, &hubs[wheel]);
+        is_known = wheel_hub(view, range, &common, wheel, &heights[wheel]);
     }
-    const bool is_spanned = is_known && span_states(view, range, hubs, spanned);
+    bool is_spanned = is_known;
+    const bool is_flat =
+        is_known && (range->close_from_m > 0.0) && nav_states_flat(view->vehicle, heights, spanned);
+    if (is_known && !is_flat)
+    {
+        for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
+        {
+            spanned->linkage.state[k] = range->middle[k];
+        }
+        is_spanned = nav_states_solve(view->vehicle, heights, spanned);
+    }
     range->is_bounded = range->is_bounded && is_spanned;
     return is_spanned;
 }
 
 /** All bounds of the states that a range has led to. */
-static void bound_states(const view_t *view,
-                         const range_t *range,
+static void bound_states(const nav_ace_view_t *view,
+                         const nav_ace_range_t *range,
                          bool is_certified,
                          nav_spanned_t *spanned,
                          nav_ace_bounds_t *bounds)
@@ -621,79 +605,168 @@ static void bound_states(const view_t *view,
     attitude_bounds(view, spanned, bounds);
     belly_bounds(view, spanned, bounds);
     bounds->is_certified = (is_certified && (bounds->belly_unknown < 1.0)) ? 1U : 0U;
-    bounds->reason = (uint32_t) nav_ace_refuse(view->params, bounds, false);
+    bounds->reason = (uint32_t) nav_ace_refuse(view->params, bounds, view->is_leaving);
 }
 
 /** Certified bounds are themselves a range that the rover stays within: what follows from it is
- * certified too, and tighter. */
-static void tighten(const view_t *view,
-                    range_t *range,
+ * certified too, and mostly tighter. */
+static void tighten(const nav_ace_view_t *view,
+                    nav_ace_range_t *range,
                     nav_spanned_t *spanned,
                     nav_ace_bounds_t *bounds)
 {
     static const double NONE[NAV_LINKAGE_STATES] = {0.0};
     range_around(view, spanned, 1.0, NONE, range);
+    range->close_from_m = 0.0;
     (void) span_range(view, range, spanned);
-    if (is_consistent(spanned, range))
+    if (range->is_bounded)
     {
         bound_states(view, range, true, spanned, bounds);
     }
 }
 
-/** Looks for a consistent range. @return false when there is nothing known to stand on, or no state */
-static bool find_range(const view_t *view,
-                       range_t *range,
-                       nav_spanned_t *spanned,
-                       bool *is_certified)
+/** What became of the search for a range. */
+typedef enum
 {
-    bool is_standing = true;
-    *is_certified = false;
+    NOT_STANDING, /* nothing known to stand on, or no state */
+    DROPPING,     /* a wheel drop that is refused whatever the range */
+    STANDING,     /* states, but no consistent range */
+    CERTIFIED
+} finding_t;
+
+/** Looks for a consistent range: roughly first, then closely. */
+static finding_t find_range(const nav_ace_view_t *view,
+                            nav_ace_range_t *range,
+                            nav_spanned_t *spanned,
+                            nav_ace_bounds_t *bounds)
+{
+    finding_t finding = STANDING;
     range_first(view, range);
     range->is_bounded = true;
-    for (uint32_t k = 0U; (k < ATTEMPTS) && range->is_bounded && !*is_certified; k++)
+    for (uint32_t k = 0U; (k < ATTEMPTS) && range->is_bounded && (finding == STANDING); k++)
     {
         if (k > 0U)
         {
             range_around(view, spanned, WIDENING_FIRST + (WIDENING_STEP * (double) k), LEAST_HALF,
                          range);
         }
-        is_standing = span_range(view, range, spanned);
-        *is_certified = is_consistent(spanned, range);
+        range->close_from_m = CLOSE_FROM_M[k];
+        if (!span_range(view, range, spanned))
+        {
+            finding = NOT_STANDING;
+        }
+        else if (is_consistent(spanned, range))
+        {
+            finding = CERTIFIED;
+        }
+        else
+        {
+            finding = STANDING;
+        }
+        if ((k == 0U) && (range->widest_m > SUSPECT_M) && is_dropping(view, range, bounds))
+        {
+            finding = DROPPING;
+        }
     }
-    return is_standing;
+    return finding;
+}
+
+/** What tightening has gained, or could. */
+typedef struct
+{
+    double clearance_m;
+    double drop_m;
+} gain_t;
+
+/** Do bounds refuse a pose, but could they accept it with a gain? */
+static bool is_near_limits(const nav_ace_view_t *view,
+                           const nav_ace_bounds_t *bounds,
+                           const gain_t *gain)
+{
+    return (bounds->reason != (uint32_t) NAV_REASON_NONE) &&
+           ((bounds->clearance_min_m + gain->clearance_m) >= view->limits.clearance_min_m) &&
+           ((bounds->wheel_drop_max_m - gain->drop_m) <= view->limits.wheel_drop_max_m);
+}
+
+/** Tightens bounds that refuse a pose, as long as what the last time has gained could be enough. */
+static void tighten_refused(const nav_ace_view_t *view,
+                            nav_ace_range_t *range,
+                            nav_spanned_t *spanned,
+                            nav_ace_bounds_t *bounds)
+{
+    gain_t gain = {FIRST_GAIN_M, FIRST_DROP_GAIN_M};
+    bool is_worth_it = is_near_limits(view, bounds, &gain);
+    for (uint32_t k = 0U; (k < TIGHTENINGS) && is_worth_it; k++)
+    {
+        const double clearance_m = bounds->clearance_min_m;
+        const double drop_m = bounds->wheel_drop_max_m;
+        tighten(view, range, spanned, bounds);
+        gain.clearance_m = nav_max(bounds->clearance_min_m - clearance_m, LEAST_GAIN_M);
+        gain.drop_m = nav_max(drop_m - bounds->wheel_drop_max_m, LEAST_DROP_GAIN_M);
+        is_worth_it = is_near_limits(view, bounds, &gain);
+    }
+}
+
+/** Bounds at the pose of a view. */
+static void bound_pose(nav_ace_work_t *work, nav_ace_bounds_t *bounds)
+{
+    const nav_ace_view_t *view = &work->view;
+    nav_ace_range_t *range = &work->range;
+    nav_spanned_t *spanned = &work->spanned;
+    const finding_t finding = find_range(view, range, spanned, bounds);
+    if (finding == NOT_STANDING)
+    {
+        /* which wheels and why */
+        drop_bounds(view, range, bounds);
+        bounds->reason = (bounds->wheel_unknown < 1.0) ? (uint32_t) NAV_REASON_UNEXPECTED
+                                                       : (uint32_t) NAV_REASON_UNKNOWN;
+    }
+    else if (finding == DROPPING)
+    {
+        bounds->belly_unknown = 0.0;
+        bounds->reason = (uint32_t) NAV_REASON_WHEEL_DROP;
+    }
+    else
+    {
+        bound_states(view, range, finding == CERTIFIED, spanned, bounds);
+        if (finding == CERTIFIED)
+        {
+            tighten_refused(view, range, spanned, bounds);
+        }
+    }
+}
+
+/** Leaves no pointers behind: the work lies in a context, which may be copied. */
+static void forget_scene(nav_ace_view_t *view)
+{
+    view->params = NULL;
+    view->vehicle = NULL;
+    view->ground.surface = NULL;
+    view->ground.costmap = NULL;
+    view->ground.relief = NULL;
 }
 
 void nav_ace_evaluate(const nav_ace_scene_t *scene,
                       const nav_pose2_t *pose,
                       const nav_uncertainty_t *uncertainty,
+                      bool is_leaving,
                       nav_ace_bounds_t *bounds)
 {
     static const nav_ace_bounds_t UNKNOWN = {
         .wheel_unknown = 1.0, .belly_unknown = 1.0, .reason = (uint32_t) NAV_REASON_UNKNOWN};
-    view_t view = {.params = scene->params, .vehicle = scene->vehicle, .uncertainty = *uncertainty};
-    nav_spanned_t spanned;
-    range_t range;
-    bool is_certified = false;
+    nav_ace_view_t *view = &scene->work->view;
 
+    view->params = scene->params;
+    view->vehicle = scene->vehicle;
+    view->is_leaving = is_leaving;
+    view->limits = limits_of(scene->params, is_leaving);
+    view->uncertainty = *uncertainty;
     *bounds = UNKNOWN;
-    if (nav_ground_place(&view.ground, scene->surface, scene->costmap, scene->relief, pose))
+    if (nav_ground_place(&view->ground, scene->surface, scene->costmap, scene->relief, pose))
     {
-        if (find_range(&view, &range, &spanned, &is_certified))
-        {
-            bound_states(&view, &range, is_certified, &spanned, bounds);
-            if (is_certified && (bounds->reason != (uint32_t) NAV_REASON_NONE))
-            {
-                tighten(&view, &range, &spanned, bounds);
-            }
-        }
-        else
-        {
-            /* which wheels and why */
-            drop_bounds(&view, &range, bounds);
-            bounds->reason = (bounds->wheel_unknown < 1.0) ? (uint32_t) NAV_REASON_UNEXPECTED
-                                                           : (uint32_t) NAV_REASON_UNKNOWN;
-        }
+        bound_pose(scene->work, bounds);
     }
+    forget_scene(view);
 }
 
 nav_uncertainty_t nav_ace_grow(const nav_params_t *params,

@@ -32,6 +32,7 @@ typedef struct
     const nav_ground_t *ground;
     const nav_spanned_t *spanned;
     const nav_box_t *box;
+    double enough_m;
     affine_t u_m; /* from the ROVER origin along the body's heading in the plane */
     affine_t v_m;
     affine_t free_m;             /* clearance in the middle state */
@@ -40,6 +41,8 @@ typedef struct
     double spread_v[NAV_WHEELS];
     double spread_per_m;     /* how much the loss over all wheels can change with the place */
     double spread_per_above; /* and more of it per metre that ground stands off the plane */
+    double off_plane;        /* all of that, with its place */
+    double free_reach_m;     /* how much clearance without spread changes within a costmap cell */
 } belly_t;
 
 static double affine_at(const affine_t *affine, double north_m, double east_m, double above_m)
@@ -229,26 +232,40 @@ static bool is_near(const belly_t *belly, const nav_box_t *feet, const nav_tile_
            (fabs(v_m - feet->v_m) <= (feet->half_v_m + reach_v_m));
 }
 
+/** Largest spread of what stands off the plane in a costmap cell beyond that at the plane. */
+static double patch_off_m(const belly_t *belly, const nav_tile_t *patch)
+{
+    return belly->off_plane * nav_max(fabs(patch->above.low_m), fabs(patch->above.high_m));
+}
+
 /** Largest spread of what stands in a costmap cell. */
 static double patch_spread_m(const belly_t *belly, const nav_tile_t *patch)
 {
     const double half_m = MIDDLE * belly->ground->surface->cell_m;
     const double u_m = affine_at(&belly->u_m, patch->north_m, patch->east_m, 0.0);
     const double v_m = affine_at(&belly->v_m, patch->north_m, patch->east_m, 0.0);
-    const double off_m = nav_max(fabs(patch->above.low_m), fabs(patch->above.high_m)) *
-                         nav_max(fabs(belly->u_m.per_above), fabs(belly->v_m.per_above));
-    return spread_at_m(belly, u_m, v_m) + (belly->spread_per_m * ((1.5 * half_m) + off_m));
+    return spread_at_m(belly, u_m, v_m) + (belly->spread_per_m * 1.5 * half_m) +
+           patch_off_m(belly, patch);
 }
 
-/** Clearance that nothing in a costmap cell can fall below. */
-static double patch_free_m(const belly_t *belly, const nav_tile_t *patch, double spread_m)
+/** Largest spread of all ground at the level of the plane in a box: it is convex, so that of a corner. */
+static double spread_over_m(const belly_t *belly, const nav_box_t *feet)
+{
+    const double front_m = feet->u_m + feet->half_u_m;
+    const double rear_m = feet->u_m - feet->half_u_m;
+    const double left_m = feet->v_m - feet->half_v_m;
+    const double right_m = feet->v_m + feet->half_v_m;
+    return nav_max(
+        nav_max(spread_at_m(belly, front_m, left_m), spread_at_m(belly, front_m, right_m)),
+        nav_max(spread_at_m(belly, rear_m, left_m), spread_at_m(belly, rear_m, right_m)));
+}
+
+/** Clearance that nothing in a costmap cell can fall below, spread aside. */
+static double patch_free_m(const belly_t *belly, const nav_tile_t *patch)
 {
     const affine_t *free_m = &belly->free_m;
-    const double half_m = MIDDLE * belly->ground->surface->cell_m;
-    const double off_plane_m = nav_max(fabs(patch->above.low_m), fabs(patch->above.high_m));
     return affine_at(free_m, patch->north_m, patch->east_m, patch->above.high_m) -
-           (half_m * (fabs(free_m->per_north) + fabs(free_m->per_east))) - spread_m -
-           (belly->spread_per_above * off_plane_m);
+           belly->free_reach_m;
 }
 
 /** A costmap cell that the belly touches. */
@@ -263,23 +280,13 @@ typedef struct
 /** What the belly touches, and what is known of it so far. */
 typedef struct
 {
+    double spread_m;        /* largest of all ground at the level of the plane */
+    double least_m;         /* clearance */
     uint32_t unknown_count; /* heightmap cells in the box */
-    double least_m;
-    uint32_t count; /* of those to look at later */
-    uint32_t best;  /* that which could be least */
+    uint32_t count;         /* of those to look at later */
+    uint32_t best;          /* that which could be least */
     under_t cells[UNDER_MAX];
 } search_t;
-
-static under_t under_of(const belly_t *belly, const nav_tile_t *patch, int32_t row, int32_t col)
-{
-    under_t under = {row, col, NAV_ETA_NONE, -NAV_ETA_NONE};
-    if (patch->is_whole)
-    {
-        under.spread_m = patch_spread_m(belly, patch);
-        under.free_m = patch_free_m(belly, patch, under.spread_m);
-    }
-    return under;
-}
 
 static void look_at(const belly_t *belly, const under_t *cell, search_t *search)
 {
@@ -303,14 +310,39 @@ static void take(const belly_t *belly, const under_t *cell, search_t *search)
     }
 }
 
+/** Takes a costmap cell as a whole where it leaves enough, or else to be looked at. */
+static void touch(const belly_t *belly,
+                  const nav_box_t *feet,
+                  const nav_tile_t *patch,
+                  under_t *cell,
+                  search_t *search)
+{
+    if (is_near(belly, feet, patch))
+    {
+        const double free_m = patch_free_m(belly, patch);
+        const double left_m = free_m - (search->spread_m + patch_off_m(belly, patch));
+        if (patch->is_whole && (left_m >= belly->enough_m))
+        {
+            search->least_m = nav_min(search->least_m, left_m);
+        }
+        else
+        {
+            cell->spread_m = patch->is_whole ? patch_spread_m(belly, patch) : NAV_ETA_NONE;
+            cell->free_m = patch->is_whole ? (free_m - cell->spread_m) : -NAV_ETA_NONE;
+            take(belly, cell, search);
+        }
+    }
+}
+
 /** Finds the costmap cells that the belly touches. */
 static void find_touched(const belly_t *belly,
                          const nav_box_t *feet,
                          const nav_cost_box_t *cells,
                          search_t *search)
 {
-    search->unknown_count = 0U;
+    search->spread_m = spread_over_m(belly, feet);
     search->least_m = NAV_ETA_NONE;
+    search->unknown_count = 0U;
     search->count = 0U;
     search->best = 0U;
     for (int32_t row = cells->rows.first; row <= cells->rows.last; row++)
@@ -318,11 +350,8 @@ static void find_touched(const belly_t *belly,
         for (int32_t col = cells->cols.first; col <= cells->cols.last; col++)
         {
             const nav_tile_t patch = nav_ground_tile(belly->ground, row, col);
-            if (is_near(belly, feet, &patch))
-            {
-                const under_t cell = under_of(belly, &patch, row, col);
-                take(belly, &cell, search);
-            }
+            under_t cell = {row, col, 0.0, 0.0};
+            touch(belly, feet, &patch, &cell, search);
         }
     }
 }
@@ -347,18 +376,18 @@ static nav_clearance_t clearance_over(const belly_t *belly,
     if (search.count > 0U)
     {
         look_at(belly, &search.cells[search.best], &search);
-        for (uint32_t k = 0U; k < search.count; k++)
+    }
+    for (uint32_t k = 0U; k < search.count; k++)
+    {
+        if ((k != search.best) && (search.cells[k].free_m < search.least_m))
         {
-            if ((k != search.best) && (search.cells[k].free_m < search.least_m))
-            {
-                look_at(belly, &search.cells[k], &search);
-            }
+            look_at(belly, &search.cells[k], &search);
         }
-        clearance.clearance_min_m = search.least_m;
-        if (search.least_m < NAV_ETA_NONE)
-        {
-            clearance.unknown = nav_min((double) search.unknown_count / cells_in_box(belly), 1.0);
-        }
+    }
+    clearance.clearance_min_m = search.least_m;
+    if (search.least_m < NAV_ETA_NONE)
+    {
+        clearance.unknown = nav_min((double) search.unknown_count / cells_in_box(belly), 1.0);
     }
     return clearance;
 }
@@ -367,14 +396,15 @@ nav_clearance_t nav_belly_clearance(const nav_ground_t *ground,
                                     const nav_spanned_t *spanned,
                                     const nav_box_t *box,
                                     double height_m,
-                                    double turn_rad)
+                                    double turn_rad,
+                                    double enough_m)
 {
     const double lifted_m = spanned->linkage.state[NAV_LINKAGE_HEIGHT] / ground->cos_slope;
     const double lean_u = fabs(spanned->linkage.state[NAV_LINKAGE_PITCH]) +
                           spanned->half[NAV_LINKAGE_PITCH] + fabs(ground->rise_forward);
     const double lean_v = fabs(spanned->linkage.state[NAV_LINKAGE_ROLL]) +
                           spanned->half[NAV_LINKAGE_ROLL] + fabs(ground->rise_right);
-    belly_t belly = {.ground = ground, .spanned = spanned, .box = box};
+    belly_t belly = {.ground = ground, .spanned = spanned, .box = box, .enough_m = enough_m};
     nav_box_t feet = *box;
     nav_cost_box_t cells;
     nav_clearance_t clearance = {NAV_ETA_NONE, 1.0};
@@ -384,6 +414,11 @@ nav_clearance_t nav_belly_clearance(const nav_ground_t *ground,
     place_axes(&belly, turn_rad);
     place_clearance(&belly, height_m);
     place_spread(&belly);
+    belly.off_plane =
+        belly.spread_per_above +
+        (belly.spread_per_m * nav_max(fabs(belly.u_m.per_above), fabs(belly.v_m.per_above)));
+    belly.free_reach_m = MIDDLE * ground->surface->cell_m *
+                         (fabs(belly.free_m.per_north) + fabs(belly.free_m.per_east));
     /* the same feet, seen from the pose */
     nav_box_t around = feet;
     around.u_m += lifted_m * ground->forward_up;

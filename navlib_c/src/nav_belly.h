@@ -10,27 +10,12 @@
 #ifndef NAV_BELLY_H
 #define NAV_BELLY_H
 
-#include "nav_ground.h"
-#include "nav_vehicle.h"
-
-/** A state of the linkage, spanned by the intervals of the wheel heights. */
-typedef struct
-{
-    nav_linkage_t linkage; /* solved for the middles */
-    double half[NAV_LINKAGE_STATES];
-    double wheel_middle_m[NAV_WHEELS];
-    double wheel_half_m[NAV_WHEELS];
-    double curved_m2; /* scale of what the linearization leaves out */
-    double sin_roll;  /* of the middle */
-    double cos_roll;
-    double sin_pitch;
-    double cos_pitch;
-} nav_spanned_t;
+#include "nav_states.h"
 
 /** What stands under the belly. */
 typedef struct
 {
-    double clearance_min_m; /* NAV_ETA_NONE when no known ground is under it */
+    double clearance_min_m; /* a lower bound; NAV_ETA_NONE when no known ground is under it */
     double unknown;         /* share of the box; 1 over no known ground */
 } nav_clearance_t;
 
@@ -38,11 +23,13 @@ typedef struct
  * @param box       the belly, grown, along the axes of the body, from the ROVER origin
  * @param height_m  of the pan above the flat ground
  * @param turn_rad  of the body in the plane
+ * @param enough_m  ground that leaves this much clearance is not looked at closely
  */
 nav_clearance_t nav_belly_clearance(const nav_ground_t *ground,
                                     const nav_spanned_t *spanned,
                                     const nav_box_t *box,
                                     double height_m,
-                                    double turn_rad);
+                                    double turn_rad,
+                                    double enough_m);
 
 #endif

@@ -400,6 +400,7 @@ static void analyze(nav_ctx_t *ctx,
     nav_relief_update(&ctx->relief, &ctx->costmap, &ctx->costmap_state, &ctx->surface);
     nav_passage_update(&ctx->costmap, &ctx->costmap_state, &ctx->params, &ctx->footprint,
                        &ctx->relief, &ctx->surface);
+    nav_relief_rest(&ctx->relief, &ctx->surface, ctx->params.wheel_radius_m);
     ctx->is_analyzed = 1U;
 
     for (uint32_t k = 0U; k < (uint32_t) NAV_COSTMAP_CELLS; k++)
@@ -525,10 +526,10 @@ static void report_selection(const nav_ctx_t *ctx, double time_s, const nav_sele
     }
 }
 
-static nav_ace_scene_t ace_scene(const nav_ctx_t *ctx)
+static nav_ace_scene_t ace_scene(nav_ctx_t *ctx)
 {
-    const nav_ace_scene_t scene = {&ctx->params, &ctx->vehicle, &ctx->surface, &ctx->costmap,
-                                   &ctx->relief};
+    const nav_ace_scene_t scene = {&ctx->params,  &ctx->vehicle, &ctx->surface,
+                                   &ctx->costmap, &ctx->relief,  &ctx->ace_work};
     return scene;
 }
 
@@ -599,7 +600,7 @@ static nav_status_t check_evaluate_arc(const nav_ctx_t *ctx, const nav_evaluate_
 }
 
 /** Zones in every mode, terrain in Guarded and Avoid All. */
-static nav_reason_t evaluate_pose(const nav_ctx_t *ctx,
+static nav_reason_t evaluate_pose(nav_ctx_t *ctx,
                                   const nav_evaluate_arc_in_t *in,
                                   const nav_pose2_t *pose,
                                   double distance_m,
@@ -611,16 +612,15 @@ static nav_reason_t evaluate_pose(const nav_ctx_t *ctx,
     const nav_uncertainty_t grown = nav_ace_grow(&ctx->params, &in->uncertainty, distance_m);
     nav_reason_t reason = NAV_REASON_NONE;
 
-    nav_ace_evaluate(&scene, pose, &grown, bounds);
+    nav_ace_evaluate(&scene, pose, &grown,
+                     (in->is_leaving != 0U) && (distance_m <= ctx->params.leave_length_m), bounds);
     if (nav_kioz_forbids(&ctx->kioz, pose->x_m, pose->y_m, in->uncertainty.global_position_m))
     {
         reason = NAV_REASON_KIOZ;
     }
     else if (test_terrain)
     {
-        const bool is_leaving =
-            (in->is_leaving != 0U) && (distance_m <= ctx->params.leave_length_m);
-        reason = nav_ace_refuse(&ctx->params, bounds, is_leaving);
+        reason = (nav_reason_t) bounds->reason;
     }
     else
     {
@@ -629,7 +629,7 @@ static nav_reason_t evaluate_pose(const nav_ctx_t *ctx,
     return reason;
 }
 
-static void evaluate_arc(const nav_ctx_t *ctx,
+static void evaluate_arc(nav_ctx_t *ctx,
                          const nav_evaluate_arc_in_t *in,
                          nav_evaluate_arc_out_t *out)
 {

@@ -498,11 +498,11 @@ static nav_reason_t test_pose(call_t *call,
         const nav_uncertainty_t grown =
             nav_ace_grow(call->params, &call->in->uncertainty, distance_m);
         nav_ace_bounds_t bounds;
-        nav_ace_evaluate(&call->scene->ace, pose, &grown, &bounds);
+        nav_ace_evaluate(&call->scene->ace, pose, &grown,
+                         call->is_leaving && (distance_m <= call->params->leave_length_m), &bounds);
         call->ace_evaluations++;
         worsen(worst, &bounds);
-        reason = nav_ace_refuse(call->params, &bounds,
-                                call->is_leaving && (distance_m <= call->params->leave_length_m));
+        reason = (nav_reason_t) bounds.reason;
         nav_costmap_feedback(call->scene->costmap, pose, reason);
     }
     else

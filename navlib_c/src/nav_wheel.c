@@ -47,13 +47,13 @@ static line_t line_of(const nav_ground_t *ground, const nav_box_t *box, int32_t 
     return line;
 }
 
-/** Lines that a box touches. */
-static nav_indices_t lines_across(const nav_lanes_t *lanes, const nav_box_t *box)
+/** Lines that a box touches, made longer at both ends. */
+static nav_indices_t lines_across(const nav_lanes_t *lanes, const nav_box_t *box, double more_u_m)
 {
     const double middle =
         lanes->major + (lanes->major_per_u * box->u_m) + (lanes->major_per_v * box->v_m);
-    const double half =
-        (fabs(lanes->major_per_u) * box->half_u_m) + (fabs(lanes->major_per_v) * box->half_v_m);
+    const double half = (fabs(lanes->major_per_u) * (box->half_u_m + more_u_m)) +
+                        (fabs(lanes->major_per_v) * box->half_v_m);
     return nav_ground_between(middle - half, middle + half);
 }
 
@@ -163,7 +163,7 @@ nav_span_t nav_wheel_span(const nav_ground_t *ground, const nav_footprint_t *foo
 {
     const nav_lanes_t *lanes = &ground->lanes;
     const nav_box_t feet = nav_wheel_feet(ground, footprint);
-    const nav_indices_t lines = lines_across(lanes, &feet);
+    const nav_indices_t lines = lines_across(lanes, &feet, 0.0);
     nav_span_t span = {{NAV_ETA_NONE, -NAV_ETA_NONE}, 0U, 0U};
 
     for (int32_t major = lines.first; major <= lines.last; major++)
@@ -450,13 +450,14 @@ static void raise_along_inner(const track_t *track, const line_t lines[2], doubl
     if (has_inner(track, &lines[0]) || has_inner(track, &lines[1]))
     {
         const double half_m = track->places->half_u_m + track->half_u_m;
-        const touch_t first = touch_at(track, lines[0].u_m, inner_high_m(track, &lines[0]));
-        const touch_t last = touch_at(track, lines[1].u_m, inner_high_m(track, &lines[1]));
-        const double over_m = nav_max(first.eta_m, last.eta_m);
-        const stretch_t forward = {first, last, 0.0, over_m};
-        const stretch_t backward = {last, first, 0.0, over_m};
-        raise_along(track, half_m, &forward, high_m);
-        raise_along(track, half_m, &backward, high_m);
+        stretch_t stretch = {.from = touch_at(track, lines[0].u_m, inner_high_m(track, &lines[0])),
+                             .to = touch_at(track, lines[1].u_m, inner_high_m(track, &lines[1]))};
+        const touch_t first = stretch.from;
+        stretch.over_m = nav_max(first.eta_m, stretch.to.eta_m);
+        raise_along(track, half_m, &stretch, high_m);
+        stretch.from = stretch.to;
+        stretch.to = first;
+        raise_along(track, half_m, &stretch, high_m);
     }
 }
 
@@ -493,26 +494,33 @@ static void raise_between(const track_t *track, int32_t major, double reach_m, d
 /** Highest hub over all places: looks closely first where the hub could be highest. */
 static double hub_high_m(const track_t *track, const profile_t *profile)
 {
-    double reach_m[LINES_MAX];
     double high_m = -NAV_ETA_NONE;
     double ceiling_max_m = -NAV_ETA_NONE;
+    double best_reach_m = 0.0;
     uint32_t best = 0U;
     for (uint32_t k = 0U; (k + 1U) < profile->count; k++)
     {
-        reach_m[k] = reach_between_m(track, profile, k);
-        const double ceiling_m = over_between_m(track, profile, k) + reach_m[k];
+        const double reach_m = reach_between_m(track, profile, k);
+        const double ceiling_m = over_between_m(track, profile, k) + reach_m;
         best = (ceiling_m > ceiling_max_m) ? k : best;
+        best_reach_m = (ceiling_m > ceiling_max_m) ? reach_m : best_reach_m;
         ceiling_max_m = nav_max(ceiling_max_m, ceiling_m);
     }
     if (profile->count > 1U)
     {
-        raise_between(track, profile->first + (int32_t) best, reach_m[best], &high_m);
+        raise_between(track, profile->first + (int32_t) best, best_reach_m, &high_m);
     }
     for (uint32_t k = 0U; (k + 1U) < profile->count; k++)
     {
-        if ((k != best) && ((over_between_m(track, profile, k) + reach_m[k]) > high_m))
+        const double over_m = over_between_m(track, profile, k);
+        /* no reach is longer than the radius */
+        if ((k != best) && ((over_m + track->radius_m) > high_m))
         {
-            raise_between(track, profile->first + (int32_t) k, reach_m[k], &high_m);
+            const double reach_m = reach_between_m(track, profile, k);
+            if ((over_m + reach_m) > high_m)
+            {
+                raise_between(track, profile->first + (int32_t) k, reach_m, &high_m);
+            }
         }
     }
     return high_m;
@@ -531,18 +539,20 @@ static double under_hub_m(const track_t *track,
                           double u_m,
                           double reach_m)
 {
+    const double lean = fabs(track->ground->forward_up);
     double under_m = NAV_ETA_NONE;
+    double from_m = low_u_m(track, profile, 0U);
     for (uint32_t k = 0U; (k + 1U) < profile->count; k++)
     {
         const double stretch_m = nav_min(profile->under_m[k], profile->under_m[k + 1U]);
         const double over_m = nav_max(profile->over_m[k], profile->over_m[k + 1U]);
-        const double near_m = reach_m + ((over_m - stretch_m) * fabs(track->ground->forward_up));
-        const double from_m = low_u_m(track, profile, k);
+        const double near_m = reach_m + ((over_m - stretch_m) * lean);
         const double to_m = low_u_m(track, profile, k + 1U);
         if (((nav_min(from_m, to_m) - near_m) <= u_m) && (u_m <= (nav_max(from_m, to_m) + near_m)))
         {
             under_m = nav_min(under_m, stretch_m);
         }
+        from_m = to_m;
     }
     return (under_m < NAV_ETA_NONE) ? (under_m * track->ground->cos_slope) : -NAV_ETA_NONE;
 }
@@ -552,17 +562,19 @@ static double under_hub_m(const track_t *track,
 static double part_low_m(const track_t *track, const profile_t *profile, double u_m, double half_m)
 {
     const double reach_m = half_m + track->half_u_m;
-    double standing_m = -NAV_ETA_NONE;
+    const double radius_m = track->radius_m;
+    double standing_m = under_hub_m(track, profile, u_m, reach_m) + radius_m;
     for (uint32_t k = 0U; k < profile->count; k++)
     {
         const double along_m = fabs(low_u_m(track, profile, k) - u_m) + reach_m;
-        if (along_m < track->radius_m)
+        const double eta_m = profile->low_m[k] * track->ground->cos_slope;
+        /* no higher than straight above it */
+        if ((along_m < radius_m) && ((eta_m + radius_m) > standing_m))
         {
-            standing_m = nav_max(standing_m, (profile->low_m[k] * track->ground->cos_slope) +
-                                                 disc_m(track->radius_m, along_m));
+            standing_m = nav_max(standing_m, eta_m + disc_m(radius_m, along_m));
         }
     }
-    return nav_max(standing_m - track->radius_m, under_hub_m(track, profile, u_m, reach_m));
+    return standing_m - radius_m;
 }
 
 /** Lowest hub over all places. */
@@ -605,12 +617,11 @@ nav_interval_t nav_wheel_interval(const nav_ground_t *ground,
                            half_minor,
                            half_minor * fabs(lanes->u_per_minor),
                            (fabs(lanes->minor_per_major) > PARALLEL) ? 1 : 0};
-    nav_box_t touched = *places;
     profile_t profile;
 
     /* and one line more on either side: what is touched can lie between two */
-    touched.half_u_m += touch_reach_m(ground, above, radius_m) + fabs(lanes->u_per_major);
-    nav_indices_t majors = lines_across(lanes, &touched);
+    nav_indices_t majors = lines_across(
+        lanes, places, touch_reach_m(ground, above, radius_m) + fabs(lanes->u_per_major));
     (void) cut_to_map(&majors);
     nav_interval_t hub = {above->low_m * ground->cos_slope, above->high_m * ground->cos_slope};
     if ((majors.last - majors.first) < (int32_t) LINES_MAX)

@@ -67,8 +67,8 @@ static nav_status_t map_ground(FILE *file)
 
 static void evaluate_poses(FILE *file)
 {
-    const nav_ace_scene_t scene = {&ctx.params, &ctx.vehicle, &ctx.surface, &ctx.costmap,
-                                   &ctx.relief};
+    const nav_ace_scene_t scene = {&ctx.params,  &ctx.vehicle, &ctx.surface,
+                                   &ctx.costmap, &ctx.relief,  &ctx.ace_work};
     double numbers[POSE_NUMBERS];
     unsigned pose_count = 0U;
     unsigned certified_count = 0U;
@@ -79,7 +79,7 @@ static void evaluate_poses(FILE *file)
         const nav_pose2_t pose = {numbers[0], numbers[1], numbers[2]};
         const nav_uncertainty_t uncertainty = {numbers[3], numbers[4], 0.0};
         nav_ace_bounds_t bounds;
-        nav_ace_evaluate(&scene, &pose, &uncertainty, &bounds);
+        nav_ace_evaluate(&scene, &pose, &uncertainty, false, &bounds);
         pose_count++;
         certified_count += bounds.is_certified;
         safe_count += (bounds.reason == (uint32_t) NAV_REASON_NONE) ? 1U : 0U;

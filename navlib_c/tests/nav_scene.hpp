@@ -93,11 +93,11 @@ class Scene
 
     nav_ace_bounds_t ace(double x_m, double y_m, double yaw_rad, const nav_uncertainty_t &u = {})
     {
-        const nav_ace_scene_t scene = {&ctx->params, &ctx->vehicle, &ctx->surface, &ctx->costmap,
-                                       &ctx->relief};
+        const nav_ace_scene_t scene = {&ctx->params,  &ctx->vehicle, &ctx->surface,
+                                       &ctx->costmap, &ctx->relief,  &ctx->ace_work};
         const nav_pose2_t pose = {x_m, y_m, yaw_rad};
         nav_ace_bounds_t bounds;
-        nav_ace_evaluate(&scene, &pose, &u, &bounds);
+        nav_ace_evaluate(&scene, &pose, &u, false, &bounds);
         return bounds;
     }
 

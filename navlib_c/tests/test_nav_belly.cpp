@@ -61,7 +61,8 @@ nav_spanned_t spread(nav_spanned_t spanned, double half_m)
 
 double clearance(const nav_ground_t &ground, const nav_spanned_t &spanned)
 {
-    return nav_belly_clearance(&ground, &spanned, &BELLY, HEIGHT_M, 0.0).clearance_min_m;
+    return nav_belly_clearance(&ground, &spanned, &BELLY, HEIGHT_M, 0.0, NAV_ETA_NONE)
+        .clearance_min_m;
 }
 
 TEST(Belly, over_a_plane_it_is_at_its_height)
@@ -155,13 +156,15 @@ TEST(Belly, unknown_ground_is_told_by_its_share)
     scene.show(flat, [](double x, double) { return (x > 0.5) ? 1.0 : 0.0; });
     const nav_ground_t ground = placed(scene, 0.0);
     const nav_spanned_t level = standing();
-    const nav_clearance_t half = nav_belly_clearance(&ground, &level, &BELLY, HEIGHT_M, 0.0);
+    const nav_clearance_t half =
+        nav_belly_clearance(&ground, &level, &BELLY, HEIGHT_M, 0.0, NAV_ETA_NONE);
     EXPECT_GT(half.unknown, 0.2);
     EXPECT_LT(half.unknown, 0.6);
     EXPECT_NEAR(HEIGHT_M, half.clearance_min_m, 1e-5);
     /* what lies beside the belly does not count */
     const nav_ground_t aside = placed(scene, 0.0, 0.25, 0.45);
-    EXPECT_NEAR(half.unknown, nav_belly_clearance(&aside, &level, &BELLY, HEIGHT_M, 0.0).unknown,
+    EXPECT_NEAR(half.unknown,
+                nav_belly_clearance(&aside, &level, &BELLY, HEIGHT_M, 0.0, NAV_ETA_NONE).unknown,
                 0.06);
 }
 
@@ -180,7 +183,8 @@ TEST(Belly, over_nothing_known_all_is_unknown)
     ASSERT_TRUE(nav_ground_place(&ground, &scene.ctx->surface, &scene.ctx->costmap,
                                  &scene.ctx->relief, &pose));
     const nav_spanned_t level = standing();
-    EXPECT_DOUBLE_EQ(1.0, nav_belly_clearance(&ground, &level, &BELLY, HEIGHT_M, 0.0).unknown);
+    EXPECT_DOUBLE_EQ(
+        1.0, nav_belly_clearance(&ground, &level, &BELLY, HEIGHT_M, 0.0, NAV_ETA_NONE).unknown);
 }
 
 TEST(Belly, over_the_edge_of_the_map_all_is_unknown)
@@ -189,7 +193,28 @@ TEST(Belly, over_the_edge_of_the_map_all_is_unknown)
     scene.show(flat);
     const nav_ground_t ground = placed(scene, 0.0, 14.5, 0.0);
     const nav_spanned_t level = standing();
-    EXPECT_DOUBLE_EQ(1.0, nav_belly_clearance(&ground, &level, &BELLY, HEIGHT_M, 0.0).unknown);
+    EXPECT_DOUBLE_EQ(
+        1.0, nav_belly_clearance(&ground, &level, &BELLY, HEIGHT_M, 0.0, NAV_ETA_NONE).unknown);
+}
+
+TEST(Belly, ground_that_leaves_enough_is_bounded_from_whole_cells)
+{
+    const auto stone = [](double x, double y)
+    { return (std::hypot(x - 0.25, y - 0.25) < 0.1) ? 0.2 : 0.0; };
+    Scene scene;
+    scene.show(stone);
+    const nav_ground_t ground = placed(scene, 0.7);
+    const nav_spanned_t level = spread(standing(0.02, 0.03, -0.02), 0.02);
+    const double exact_m = clearance(ground, level);
+    for (double enough_m = 0.0; enough_m < 0.6; enough_m += 0.01)
+    {
+        const nav_clearance_t found =
+            nav_belly_clearance(&ground, &level, &BELLY, HEIGHT_M, 0.0, enough_m);
+        /* a lower bound, and the exact one where it is not enough */
+        EXPECT_LE(found.clearance_min_m, exact_m);
+        EXPECT_GE(found.clearance_min_m, std::min(exact_m, enough_m));
+        EXPECT_DOUBLE_EQ(0.0, found.unknown);
+    }
 }
 
 TEST(Belly, one_that_touches_very_many_cells_is_looked_at_wholly)
@@ -200,8 +225,10 @@ TEST(Belly, one_that_touches_very_many_cells_is_looked_at_wholly)
     const nav_ground_t ground = placed(scene, 0.0);
     const nav_spanned_t level = standing();
     const nav_box_t large = {0.0, 0.0, 4.0, 4.0};
-    EXPECT_NEAR(HEIGHT_M - 0.3,
-                nav_belly_clearance(&ground, &level, &large, HEIGHT_M, 0.0).clearance_min_m, 0.03);
+    EXPECT_NEAR(
+        HEIGHT_M - 0.3,
+        nav_belly_clearance(&ground, &level, &large, HEIGHT_M, 0.0, NAV_ETA_NONE).clearance_min_m,
+        0.03);
 }
 
 } // namespace

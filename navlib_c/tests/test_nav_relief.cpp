@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <random>
+
 #include "nav_scene.hpp"
 
 namespace
@@ -90,6 +92,83 @@ TEST(Relief, is_the_same_whether_made_step_by_step_or_at_once)
         ASSERT_EQ(fresh.ctx->relief.cells[cell].above_m, grown.ctx->relief.cells[cell].above_m);
         ASSERT_EQ(fresh.ctx->relief.cells[cell].below_m, grown.ctx->relief.cells[cell].below_m);
     }
+}
+
+constexpr double RADIUS_M = 0.26288;
+
+/// Height of the lowest point of a ball that rests over a cell, up.
+double rest_m(const Scene &scene, int row, int col)
+{
+    return -scene.ctx->relief.rest_z_site_m[(row * NAV_HEIGHTMAP_SIZE) + col];
+}
+
+/// The bilinear surface at a place in cells, up.
+double ground_m(const Scene &scene, double row, double col)
+{
+    const int r = static_cast<int>(row);
+    const int c = static_cast<int>(col);
+    const float *z = &scene.ctx->surface.z_site_m[(r * NAV_HEIGHTMAP_SIZE) + c];
+    const double south = z[0] + ((col - c) * (z[1] - z[0]));
+    const double north =
+        z[NAV_HEIGHTMAP_SIZE] + ((col - c) * (z[NAV_HEIGHTMAP_SIZE + 1] - z[NAV_HEIGHTMAP_SIZE]));
+    return -(south + ((row - r) * (north - south)));
+}
+
+TEST(Rest, on_a_plane_is_less_than_two_centimetres_above_it)
+{
+    Scene scene;
+    scene.show(flat);
+    EXPECT_NEAR(0.01 / (2.0 * RADIUS_M), rest_m(scene, 150, 170), 1e-6);
+    EXPECT_LT(rest_m(scene, 150, 170), 0.02);
+}
+
+TEST(Rest, no_ball_between_four_cells_rests_higher_than_the_highest_of_them)
+{
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    Scene scene;
+    scene.show([&](double, double)
+               { return (0.15 * unit(random)) + ((random() % 30U == 0U) ? 0.3 : 0.0); });
+    for (int trial = 0; trial < 300; trial++)
+    {
+        const int row = 100 + static_cast<int>(random() % 100U);
+        const int col = 100 + static_cast<int>(random() % 100U);
+        const double hub_row = row + unit(random);
+        const double hub_col = col + unit(random);
+        double ball_m = -1e9;
+        for (double along = -RADIUS_M; along <= RADIUS_M; along += 0.01)
+        {
+            for (double across = -RADIUS_M; across <= RADIUS_M; across += 0.01)
+            {
+                const double over = (RADIUS_M * RADIUS_M) - (along * along) - (across * across);
+                if (over >= 0.0)
+                {
+                    ball_m = std::max(
+                        ball_m, ground_m(scene, hub_row + 10.0 * along, hub_col + 10.0 * across) +
+                                    std::sqrt(over) - RADIUS_M);
+                }
+            }
+        }
+        const double highest_m =
+            std::max({rest_m(scene, row, col), rest_m(scene, row, col + 1),
+                      rest_m(scene, row + 1, col), rest_m(scene, row + 1, col + 1)});
+        EXPECT_LE(ball_m, highest_m + 1e-6);
+    }
+}
+
+TEST(Rest, a_ball_near_unknown_ground_or_the_edge_could_be_anywhere)
+{
+    Scene scene([](nav_params_t &params) { params.surface_fill_neighbors = 9.0; });
+    scene.show(flat, [](double x, double y)
+               { return (std::hypot(x - 1.05, y - 1.05) < 0.01) ? 1.0 : 0.0; });
+    /* the hidden cell is 160, 160 */
+    EXPECT_GT(rest_m(scene, 160, 164), 1e8);
+    EXPECT_GT(rest_m(scene, 156, 156), 1e8);
+    EXPECT_LT(rest_m(scene, 160, 165), 0.02);
+    EXPECT_GT(rest_m(scene, 3, 160), 1e8);
+    EXPECT_GT(rest_m(scene, 160, 296), 1e8);
+    EXPECT_LT(rest_m(scene, 4, 160), 0.02);
+    EXPECT_LT(rest_m(scene, 160, 295), 0.02);
 }
 
 } // namespace

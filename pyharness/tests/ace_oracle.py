@@ -54,6 +54,7 @@ def ace_bounds(navlib: Navlib, poses: Poses, uncertainty: npt.NDArray[np.float64
     scene.surface = ffi.addressof(ctx, "surface")
     scene.costmap = ffi.addressof(ctx, "costmap")
     scene.relief = ffi.addressof(ctx, "relief")
+    scene.work = ffi.addressof(ctx, "ace_work")
     bounds: Message = np.zeros(len(poses), dtype_of("nav_ace_bounds_t"))
     out = ffi.from_buffer("nav_ace_bounds_t[]", bounds, require_writable=True)
     pose_c = ffi.new("nav_pose2_t *")
@@ -61,7 +62,7 @@ def ace_bounds(navlib: Navlib, poses: Poses, uncertainty: npt.NDArray[np.float64
     for index in range(len(poses)):
         pose_c.x_m, pose_c.y_m, pose_c.yaw_rad = poses[index].tolist()
         doubt_c.position_m, doubt_c.yaw_rad = uncertainty[index].tolist()
-        lib.nav_ace_evaluate(scene, pose_c, doubt_c, out + index)
+        lib.nav_ace_evaluate(scene, pose_c, doubt_c, False, out + index)
     return bounds
 
 

@@ -92,15 +92,16 @@ def test_every_settled_state_lies_inside_its_bounds(
     for pose, state in zip(poses, states, strict=True):
         bounds = bounds_at(navlib, pose)
         if not bounds["is_certified"]:
-            uncertified += 1
+            # a wheel drop that decides alone leaves the other bounds out
+            uncertified += bounds["reason"] != Reason.WHEEL_DROP
             assert bounds["reason"] != Reason.NONE
             missed += bounds["reason"] == Reason.UNEXPECTED
         elif state["converged"]:
             outside = {k: v for k, v in overshoot(state, bounds).items() if v > TOLERANCE}
             assert not outside, f"at {pose.tolist()}"
         accepted += bounds["reason"] == Reason.NONE
-    # beside large rocks no range of states is consistent; their height alone refuses the pose
-    assert uncertified < 0.15 * count
+    # beside large rocks no range of states is consistent; most are refused by their height alone
+    assert uncertified < 0.05 * count
     assert missed < 0.002 * count
     # a bound that refuses everything would promise nothing
     assert accepted > 0.4 * count

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file nav_ground.h
- * @brief Private to Navlib: the surface seen from the local ground plane under one pose.
+ * @brief Used by ACE alone: the surface seen from the local ground plane under one pose.
  *
  * Plane frame: origin on the plane below the pose, u forward and v right in the plane, eta up along
  * its normal. The foot of a point is the place of the plane vertically below it: on a slope a point
@@ -25,7 +25,7 @@
 #define NAV_STAND_MAX_M 0.8
 
 /** Rows and columns of the grid. */
-#define NAV_GROUND_AXES 2U
+#define NAV_GROUND_AXES 2
 
 typedef struct
 {
