@@ -406,7 +406,7 @@ static void analyze(nav_ctx_t *ctx,
     {
         const nav_cost_cell_t *cell = &ctx->costmap.cells[k];
         out->known_count += cell->is_known;
-        out->infinite[nav_costmap_reason(cell, &ctx->params, true, true)]++;
+        out->infinite[nav_costmap_reason(cell, true, true)]++;
     }
     out->is_goal_inside =
         nav_costmap_find(&ctx->costmap, in->goal.x_site_m, in->goal.y_site_m, &index) ? 1U : 0U;

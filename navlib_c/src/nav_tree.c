@@ -176,8 +176,7 @@ static nav_reason_t terrain_cost(const call_t *call, const nav_pose2_t *pose, do
         nav_cost_cell_t cell = call->scene->costmap->cells[index];
         const uint32_t barred = nav_costmap_barred(&cell);
         cell.ace_failed_headings = 0U;
-        reason =
-            nav_costmap_reason(&cell, call->params, call->use_terrain_cost, call->use_zone_cost);
+        reason = nav_costmap_reason(&cell, call->use_terrain_cost, call->use_zone_cost);
         *cost_s_per_m = 0.0;
         if (call->use_terrain_cost)
         {
@@ -252,8 +251,8 @@ static nav_reason_t leaf_reason(const call_t *call, const branch_t *leaf)
     uint32_t index = 0U;
     if (nav_costmap_find(call->scene->costmap, leaf->end.x_m, leaf->end.y_m, &index))
     {
-        reason = nav_costmap_reason(&call->scene->costmap->cells[index], call->params,
-                                    call->use_terrain_cost, call->use_zone_cost);
+        reason = nav_costmap_reason(&call->scene->costmap->cells[index], call->use_terrain_cost,
+                                    call->use_zone_cost);
         reason = (reason == NAV_REASON_NONE) ? NAV_REASON_UNEXPECTED : reason;
     }
     return reason;

@@ -4,6 +4,11 @@
 
 #include "nav_scene.hpp"
 
+extern "C"
+{
+#include "nav_arc.h"
+}
+
 namespace
 {
 
@@ -60,20 +65,66 @@ TEST(Tree, paths_are_ordered_by_cost)
     EXPECT_TRUE(std::all_of(is_seen.begin(), is_seen.end(), [](bool seen) { return seen; }));
 }
 
-TEST(Tree, a_rock_ahead_is_driven_round)
+/// Distance at which the selected path passes the place (4, 0), m.
+double passes_rock_m(const nav_select_arc_out_t &out)
+{
+    double nearest_m = 100.0;
+    for (uint32_t k = 0; k < out.path_point_count; k++)
+    {
+        nearest_m = std::min(nearest_m, static_cast<double>(std::hypot(out.path_points[k].x_m - 4.0,
+                                                                       out.path_points[k].y_m)));
+    }
+    return nearest_m;
+}
+
+TEST(Tree, a_rock_ahead_is_driven_round_by_the_first_path_tested)
 {
     Scene scene;
     scene.show([](double x, double y) { return is_rock(x, y, 4.0, 0.0, 0.5) ? 0.6 : 0.0; });
     const auto out = scene.select(NAV_MODE_AVOID_ALL);
-    double nearest_m = 100.0;
-    for (uint32_t k = 0; k < out->path_point_count; k++)
-    {
-        nearest_m =
-            std::min(nearest_m, static_cast<double>(std::hypot(out->path_points[k].x_m - 4.0,
-                                                               out->path_points[k].y_m)));
-    }
-    EXPECT_GT(nearest_m, 0.5 + 0.7);
+    EXPECT_GT(passes_rock_m(*out), 0.5 + 0.7);
+    EXPECT_EQ(1U, out->paths_tested);
+}
+
+TEST(Tree, a_rock_that_bars_no_way_is_driven_round_once_ace_has_refused_it)
+{
+    Scene scene([](nav_params_t &params) { params.cost_barred_factor = 1.0; });
+    scene.show([](double x, double y) { return is_rock(x, y, 4.0, 0.0, 0.5) ? 0.6 : 0.0; });
+    const auto out = scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_GT(passes_rock_m(*out), 0.5 + 0.7);
     EXPECT_GT(out->rejections[NAV_REASON_CLEARANCE] + out->rejections[NAV_REASON_WHEEL_DROP], 0U);
+}
+
+/// The tree's path that goes straight on.
+constexpr uint32_t STRAIGHT_FIRST = NAV_TREE_ARCS / 2;
+constexpr uint32_t STRAIGHT = (STRAIGHT_FIRST * NAV_TREE_ARCS) + STRAIGHT_FIRST;
+
+TEST(Tree, poses_on_a_cell_barred_along_their_heading_cost_the_factor_as_much)
+{
+    Scene scene;
+    scene.show(flat);
+    scene.select(NAV_MODE_AVOID_ALL);
+    const double plain_s = scene.ctx->tree.path_cost_s[STRAIGHT];
+    uint32_t index = 0;
+    ASSERT_TRUE(nav_costmap_find(&scene.ctx->costmap, 2.1, 0.0, &index));
+    nav_cost_cell_t &cell = scene.ctx->costmap.cells[index];
+    /* poses 0.25 m apart: two of them on the cell */
+    const double dearer_s = 0.5 * cell.cost_s_per_m * (scene.ctx->params.cost_barred_factor - 1.0);
+    cell.barred_headings = 0b1110U;
+    scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_NEAR(plain_s, scene.ctx->tree.path_cost_s[STRAIGHT], 1e-9);
+    cell.barred_headings = 0b0001U;
+    scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_NEAR(plain_s + dearer_s, scene.ctx->tree.path_cost_s[STRAIGHT], 1e-6);
+    cell.barred_headings = 0U;
+    cell.ace_failed_headings = 0b0001U;
+    scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_NEAR(plain_s + dearer_s, scene.ctx->tree.path_cost_s[STRAIGHT], 1e-6);
+    scene.select(NAV_MODE_AVOID_KOZ);
+    const double zones_only_s = scene.ctx->tree.path_cost_s[STRAIGHT];
+    cell.ace_failed_headings = 0U;
+    scene.select(NAV_MODE_AVOID_KOZ);
+    EXPECT_DOUBLE_EQ(zones_only_s, scene.ctx->tree.path_cost_s[STRAIGHT]);
 }
 
 TEST(Tree, a_goal_behind_is_reached_by_turning_in_place_one_step_of_the_tree_first)
@@ -127,32 +178,176 @@ TEST(Tree, an_enclosed_rover_has_no_path)
         });
     const auto out = scene.select(NAV_MODE_AVOID_ALL, NAV_NO_PATH);
     EXPECT_EQ(static_cast<uint32_t>(NAV_NO_PATH), out->status);
-    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_CANDIDATES), out->path_index);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_NONE), out->path_index);
     EXPECT_EQ(0U, out->rejections[NAV_REASON_NONE]);
 }
 
-TEST(Tree, the_budget_bounds_the_evaluations)
+/// A wall round the rover, with its inner side at a distance.
+Scene::Elevation ring(double inner_m)
 {
-    Scene scene([](nav_params_t &params) { params.ace_budget_poses = 50.0; });
-    scene.show([](double x, double y)
-               { return ((x > 2.0) && (x < 2.3) && (std::fabs(y) < 9.0)) ? 0.5 : 0.0; });
-    const auto out = scene.select(NAV_MODE_AVOID_ALL, NAV_NO_PATH);
-    EXPECT_LE(out->ace_evaluations, 50U + 60U);
-    EXPECT_GT(out->rejections[NAV_REASON_BUDGET], 0U);
+    return [=](double x, double y)
+    {
+        const double r = std::hypot(x, y);
+        return ((r > inner_m) && (r < inner_m + 1.0)) ? 1.0 : 0.0;
+    };
 }
 
-TEST(Tree, failures_of_ace_close_costmap_cells)
+TEST(Tree, the_budget_bounds_the_evaluations_of_candidates_and_the_tree_those_of_last_resorts)
 {
-    Scene scene;
+    Scene scene([](nav_params_t &params) { params.ace_budget_poses = 50.0; });
+    scene.show(ring(2.2));
+    const auto out = scene.select(NAV_MODE_AVOID_ALL, NAV_NO_PATH);
+    EXPECT_GT(out->rejections[NAV_REASON_BUDGET], 0U);
+    uint32_t last_resorts = NAV_TREE_ARCS * 4U;
+    for (uint32_t turn = 0; turn < NAV_TREE_TURNS; turn++)
+    {
+        const nav_arc_t turning = {0.0, std::fmin(turn, NAV_TREE_TURNS - turn) * 360.0 * DEG /
+                                            NAV_TREE_TURNS};
+        last_resorts += NAV_TREE_ARCS * 12U + nav_arc_pose_count(&scene.ctx->params, &turning);
+    }
+    EXPECT_LE(out->ace_evaluations, 2U * (50U + 60U + last_resorts));
+}
+
+TEST(Tree, failures_of_ace_bar_the_headings_along_which_it_failed)
+{
+    Scene scene([](nav_params_t &params) { params.cost_barred_factor = 1.0; });
     scene.show([](double x, double y)
                { return ((x > 4.0) && (x < 4.3) && (std::fabs(y) < 3.0)) ? 0.5 : 0.0; });
     scene.select(NAV_MODE_AVOID_ALL);
-    uint32_t closed = 0;
+    uint32_t failed = 0;
     for (const nav_cost_cell_t &cell : scene.ctx->costmap.cells)
     {
-        closed += (nav_costmap_reason(&cell, &scene.ctx->params, true, true) > NAV_REASON_KIOZ);
+        failed += (cell.ace_failed_headings != 0U) ? 1U : 0U;
+        EXPECT_TRUE((cell.ace_failed_headings == 0U) || (cell.ace_reason > NAV_REASON_KIOZ));
     }
-    EXPECT_GT(closed, 0U);
+    EXPECT_GT(failed, 0U);
+}
+
+/* last resorts: a first arc alone, an arc backwards */
+
+TEST(Tree, where_no_whole_path_passes_a_first_arc_does)
+{
+    Scene scene;
+    scene.show(ring(5.0));
+    const auto out = scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_SHORT) + STRAIGHT_FIRST, out->path_index);
+    EXPECT_DOUBLE_EQ(scene.ctx->tree.first_cost_s[STRAIGHT_FIRST], out->path_cost_s);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_PATHS), out->paths_tested);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_PATHS),
+              std::accumulate(out->rejections, out->rejections + NAV_REASON_COUNT, 0U));
+    EXPECT_EQ(0U, out->rejections[NAV_REASON_NONE]);
+    EXPECT_EQ(0U, out->is_leaving);
+    EXPECT_DOUBLE_EQ(1.0, out->arc.length_m);
+    EXPECT_NEAR(3.0, out->path_points[out->path_point_count - 1].x_m, 1e-6);
+    EXPECT_NEAR(0.60, out->bounds.clearance_min_m, 1e-3);
+}
+
+TEST(Tree, where_no_first_arc_passes_either_an_arc_backwards_does)
+{
+    Scene scene;
+    scene.show(ring(4.0));
+    const auto out = scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_BACK) + STRAIGHT_FIRST, out->path_index);
+    EXPECT_DOUBLE_EQ(-1.0, out->arc.length_m);
+    EXPECT_EQ(0U, out->is_leaving);
+    EXPECT_NEAR(-1.0, out->path_points[out->path_point_count - 1].x_m, 1e-6);
+    EXPECT_EQ(0U, scene.ctx->tree.kept.is_kept);
+    EXPECT_EQ(1U, scene.evaluate(out->arc.length_m, out->arc.heading_change_rad)->is_safe);
+}
+
+TEST(Tree, last_resorts_come_again_under_the_leave_limits)
+{
+    const auto within_stones = [](double inner_m)
+    {
+        return [=](double x, double y)
+        { return ring(inner_m)(x, y) + (is_rock(x, std::fabs(y), 0.0, 1.47, 0.17) ? 0.38 : 0.0); };
+    };
+    Scene scene;
+    scene.show(within_stones(5.0));
+    auto out = scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_SHORT) + STRAIGHT_FIRST, out->path_index);
+    EXPECT_EQ(1U, out->is_leaving);
+    EXPECT_GT(out->bounds.wheel_drop_max_m, scene.ctx->params.wheel_drop_max_m);
+    scene.time_s = 2.0;
+    scene.show(within_stones(4.0));
+    out = scene.select(NAV_MODE_AVOID_ALL);
+    EXPECT_LE(static_cast<uint32_t>(NAV_TREE_BACK), out->path_index);
+    EXPECT_EQ(1U, out->is_leaving);
+    EXPECT_LT(out->arc.length_m, 0.0);
+}
+
+/// A zone that a rover at the origin must stay in, on flat ground: 6 m of path do not fit into 3.6 m,
+/// nor 3 m into 2.5 m.
+class Zone : public ::testing::Test
+{
+  protected:
+    std::unique_ptr<nav_select_arc_out_t> within(double radius_m,
+                                                 nav_mode_t mode,
+                                                 nav_status_t expected = NAV_OK)
+    {
+        scene.zones({circle(NAV_ZONE_KEEP_IN, 0.0, 0.0, radius_m)});
+        scene.show(flat);
+        return scene.select(mode, expected);
+    }
+
+    Scene scene;
+};
+
+TEST_F(Zone, a_first_arc_costs_its_time_and_what_is_to_go_from_its_end)
+{
+    const auto out = within(3.6, NAV_MODE_AVOID_KOZ);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_SHORT) + STRAIGHT_FIRST, out->path_index);
+    EXPECT_EQ(0U, out->paths_tested); /* each crosses the zone's border */
+    const nav_arc_t arc = {3.0, 0.0};
+    EXPECT_NEAR(nav_arc_duration_s(&scene.ctx->params, &arc) + out->cost_to_go_s, out->path_cost_s,
+                1e-9);
+    EXPECT_GT(out->cost_to_go_s, 0.0);
+}
+
+TEST_F(Zone, an_arc_backwards_costs_its_time_its_steering_and_what_is_to_go_from_its_end)
+{
+    const auto out = within(2.5, NAV_MODE_AVOID_KOZ);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_BACK) + STRAIGHT_FIRST, out->path_index);
+    EXPECT_NEAR(nav_arc_duration_s(&scene.ctx->params, &out->arc) + out->cost_to_go_s,
+                out->path_cost_s, 1e-9);
+    EXPECT_GT(out->cost_to_go_s, 0.0);
+}
+
+TEST_F(Zone, the_rest_of_a_first_arc_is_kept)
+{
+    within(3.6, NAV_MODE_AVOID_KOZ);
+    EXPECT_EQ(1U, scene.ctx->tree.kept.is_kept);
+    EXPECT_DOUBLE_EQ(2.0, scene.ctx->tree.kept.first.length_m);
+    EXPECT_DOUBLE_EQ(0.0, scene.ctx->tree.kept.second.length_m);
+    nav_select_arc_in_t in = {};
+    auto out = std::make_unique<nav_select_arc_out_t>();
+    in.time_s = scene.time_s;
+    in.goal = scene.goal;
+    in.mode = NAV_MODE_AVOID_KOZ;
+    in.pose.x_site_m = 1.0;
+    ASSERT_EQ(NAV_OK, nav_select_arc(scene.ctx.get(), &in, out.get()));
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_PATHS), out->path_index);
+    EXPECT_DOUBLE_EQ(1.0, out->arc.length_m);
+    EXPECT_DOUBLE_EQ(scene.ctx->tree.path_cost_s[NAV_TREE_PATHS], out->path_cost_s);
+}
+
+TEST_F(Zone, a_mode_of_one_path_takes_no_last_resort)
+{
+    for (nav_mode_t mode : {NAV_MODE_UNGUARDED, NAV_MODE_GUARDED})
+    {
+        for (double radius_m : {2.5, 3.6})
+        {
+            const auto out = within(radius_m, mode, NAV_NO_PATH);
+            EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_NONE), out->path_index);
+            EXPECT_EQ(1U, out->paths_tested);
+        }
+    }
+}
+
+TEST_F(Zone, without_room_for_an_arc_there_is_no_path)
+{
+    const auto out = within(0.4, NAV_MODE_AVOID_KOZ, NAV_NO_PATH);
+    EXPECT_EQ(static_cast<uint32_t>(NAV_TREE_NONE), out->path_index);
 }
 
 /* a rover that slipped to where no path passes gets away from there */
