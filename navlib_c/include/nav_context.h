@@ -29,7 +29,7 @@ typedef struct
     nav_costmap_t costmap;
     nav_costmap_state_t costmap_state;
     nav_relief_t relief;
-    nav_footprint_t footprint;
+    nav_rover_footprint_t footprint;
     nav_ace_work_t ace_work;
     nav_global_t global;
     nav_tree_t tree;

@@ -115,10 +115,7 @@ bool nav_costmap_find(const nav_costmap_t *map, double x_site_m, double y_site_m
  * The reason why a cell is infinite for planning round terrain and/or zones; NONE when it is not. ACE
  * makes a cell infinite by failing along every heading.
  */
-nav_reason_t nav_costmap_reason(const nav_cost_cell_t *cell,
-                                const nav_params_t *params,
-                                bool use_terrain,
-                                bool use_zones);
+nav_reason_t nav_costmap_reason(const nav_cost_cell_t *cell, bool use_terrain, bool use_zones);
 
 /** The heading nearest to a yaw. */
 uint32_t nav_costmap_heading(double yaw_rad);

@@ -27,17 +27,17 @@ typedef struct
     int32_t col;
     uint32_t belly[NAV_HEADINGS]; /* the heightmap cells that lie under it */
     uint32_t wheels[NAV_HEADINGS];
-} nav_footprint_cell_t;
+} nav_rover_footprint_cell_t;
 
 /** The footprint as the costmap cells it touches. */
 typedef struct
 {
-    nav_footprint_cell_t cells[NAV_PASSAGE_SIDE * NAV_PASSAGE_SIDE];
+    nav_rover_footprint_cell_t cells[NAV_PASSAGE_SIDE * NAV_PASSAGE_SIDE];
     uint32_t count;
-} nav_footprint_t;
+} nav_rover_footprint_t;
 
 /** Lays out the footprint, grown by barred_growth_m, from checked parameters. */
-void nav_passage_init(const nav_params_t *params, nav_footprint_t *footprint);
+void nav_passage_init(const nav_params_t *params, nav_rover_footprint_t *footprint);
 
 /**
  * Finds the obstacles in the costmap cells that the last update of the costmap has recomputed, and
@@ -46,7 +46,7 @@ void nav_passage_init(const nav_params_t *params, nav_footprint_t *footprint);
 void nav_passage_update(nav_costmap_t *map,
                         const nav_costmap_state_t *state,
                         const nav_params_t *params,
-                        const nav_footprint_t *footprint,
+                        const nav_rover_footprint_t *footprint,
                         const nav_relief_t *relief,
                         const nav_surface_t *surface);
 

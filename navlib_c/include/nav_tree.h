@@ -106,15 +106,4 @@ typedef struct
     nav_costmap_t *costmap; /* ACE's feedback is written here */
 } nav_tree_scene_t;
 
-/**
- * Ranks all paths, then tests them from the cheapest until one passes what its mode demands:
- * Unguarded and Guarded test the cheapest path only (zones; zones and terrain), Avoid KOZ and Avoid
- * All go on to the next. Poses of shared prefixes are evaluated once.
- * Fills out; sends nothing.
- */
-void nav_tree_select(nav_tree_t *tree,
-                     const nav_tree_scene_t *scene,
-                     const nav_select_arc_in_t *in,
-                     nav_select_arc_out_t *out);
-
 #endif

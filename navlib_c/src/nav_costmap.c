@@ -572,10 +572,7 @@ bool nav_costmap_find(const nav_costmap_t *map, double x_site_m, double y_site_m
     return is_inside;
 }
 
-nav_reason_t nav_costmap_reason(const nav_cost_cell_t *cell,
-                                const nav_params_t *params,
-                                bool use_terrain,
-                                bool use_zones)
+nav_reason_t nav_costmap_reason(const nav_cost_cell_t *cell, bool use_terrain, bool use_zones)
 {
     nav_reason_t reason = NAV_REASON_NONE;
 

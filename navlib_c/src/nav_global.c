@@ -258,7 +258,7 @@ static double free_cost_s_per_m(const nav_cost_cell_t *cell,
 {
     double cost_s_per_m = 1.0 / params->speed_max_m_per_s;
 
-    if (nav_costmap_reason(cell, params, use_terrain, use_zones) != NAV_REASON_NONE)
+    if (nav_costmap_reason(cell, use_terrain, use_zones) != NAV_REASON_NONE)
     {
         cost_s_per_m = NAV_COST_BLOCKED_S_PER_M;
     }

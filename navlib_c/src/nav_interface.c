@@ -12,6 +12,7 @@
 #include "nav_dp.h"
 #include "nav_evr.h"
 #include "nav_math.h"
+#include "nav_select.h"
 
 #define COORDINATE_MAX_M 1.0e6
 #define YAW_MAX_RAD 1.0e4
@@ -407,7 +408,7 @@ static void analyze(nav_ctx_t *ctx,
     {
         const nav_cost_cell_t *cell = &ctx->costmap.cells[k];
         out->known_count += cell->is_known;
-        out->infinite[nav_costmap_reason(cell, &ctx->params, true, true)]++;
+        out->infinite[nav_costmap_reason(cell, true, true)]++;
     }
     out->is_goal_inside =
         nav_costmap_find(&ctx->costmap, in->goal.x_site_m, in->goal.y_site_m, &index) ? 1U : 0U;
@@ -543,7 +544,7 @@ static nav_status_t select_arc(nav_ctx_t *ctx,
     const bool use_zones = use_terrain || (in->mode == (uint32_t) NAV_MODE_AVOID_KOZ);
     ctx->time_s = in->time_s;
     nav_global_plan(&ctx->global, &ctx->costmap, &ctx->params, &in->goal, use_terrain, use_zones);
-    nav_tree_select(&ctx->tree, &scene, in, out);
+    nav_select_path(&ctx->tree, &scene, in, out);
     if ((out->status == (uint32_t) NAV_NO_PATH) && (out->paths_tested == 0U))
     {
         /* what ACE closed may be what stands in the way of the next attempt */

@@ -59,7 +59,9 @@ static bool is_under_wheel(const nav_params_t *params, place_t place)
 }
 
 /** Lays one heading of the footprint over a costmap cell. */
-static void lay_heading(const nav_params_t *params, nav_footprint_cell_t *cell, uint32_t heading)
+static void lay_heading(const nav_params_t *params,
+                        nav_rover_footprint_cell_t *cell,
+                        uint32_t heading)
 {
     cell->belly[heading] = 0U;
     cell->wheels[heading] = 0U;
@@ -78,7 +80,7 @@ static void lay_heading(const nav_params_t *params, nav_footprint_cell_t *cell, 
     }
 }
 
-void nav_passage_init(const nav_params_t *params, nav_footprint_t *footprint)
+void nav_passage_init(const nav_params_t *params, nav_rover_footprint_t *footprint)
 {
     const int32_t reach = NAV_PASSAGE_REACH;
     footprint->count = 0U;
@@ -86,7 +88,7 @@ void nav_passage_init(const nav_params_t *params, nav_footprint_t *footprint)
     {
         for (int32_t col = -reach; col <= reach; col++)
         {
-            nav_footprint_cell_t *cell = &footprint->cells[footprint->count];
+            nav_rover_footprint_cell_t *cell = &footprint->cells[footprint->count];
             uint32_t touched = 0U;
             cell->row = row;
             cell->col = col;
@@ -181,7 +183,8 @@ static void update_obstacles(nav_costmap_t *map,
 }
 
 /** Headings along which one cell of the footprint would touch an obstacle. */
-static uint32_t touched_headings(const nav_footprint_cell_t *part, const nav_cost_cell_t *obstacle)
+static uint32_t touched_headings(const nav_rover_footprint_cell_t *part,
+                                 const nav_cost_cell_t *obstacle)
 {
     uint32_t headings = 0U;
     for (uint32_t heading = 0U; heading < HEADINGS; heading++)
@@ -195,14 +198,14 @@ static uint32_t touched_headings(const nav_footprint_cell_t *part, const nav_cos
 
 /** Bars the cells in which the rover would touch the obstacles of a cell. */
 static void bar_around(nav_costmap_t *map,
-                       const nav_footprint_t *footprint,
+                       const nav_rover_footprint_t *footprint,
                        int32_t row,
                        int32_t col)
 {
     const nav_cost_cell_t obstacle = map->cells[(row * SIZE) + col];
     for (uint32_t k = 0U; k < footprint->count; k++)
     {
-        const nav_footprint_cell_t *part = &footprint->cells[k];
+        const nav_rover_footprint_cell_t *part = &footprint->cells[k];
         const int32_t rover_row = row - part->row;
         const int32_t rover_col = col - part->col;
         if ((rover_row >= 0) && (rover_row < SIZE) && (rover_col >= 0) && (rover_col < SIZE))
@@ -217,7 +220,7 @@ static void bar_around(nav_costmap_t *map,
 void nav_passage_update(nav_costmap_t *map,
                         const nav_costmap_state_t *state,
                         const nav_params_t *params,
-                        const nav_footprint_t *footprint,
+                        const nav_rover_footprint_t *footprint,
                         const nav_relief_t *relief,
                         const nav_surface_t *surface)
 {

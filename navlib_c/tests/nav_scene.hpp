@@ -101,6 +101,16 @@ class Scene
         return bounds;
     }
 
+    /// What the tree works with.
+    nav_tree_scene_t tree_scene()
+    {
+        return {{&ctx->params, &ctx->vehicle, &ctx->surface, &ctx->costmap, &ctx->relief},
+                &ctx->kioz,
+                &ctx->global,
+                &ctx->tree_shapes,
+                &ctx->costmap};
+    }
+
     std::unique_ptr<nav_select_arc_out_t> select(nav_mode_t mode, nav_status_t expected = NAV_OK)
     {
         nav_select_arc_in_t in = {};
@@ -143,6 +153,16 @@ class Scene
     double time_s = 1.0;
     uint32_t image_id = 0;
 };
+
+/// A wall round the rover, with its inner side at a distance.
+inline Scene::Elevation ring(double inner_m)
+{
+    return [=](double x, double y)
+    {
+        const double r = std::hypot(x, y);
+        return ((r > inner_m) && (r < inner_m + 1.0)) ? 1.0 : 0.0;
+    };
+}
 
 inline double flat(double, double)
 {

@@ -283,10 +283,11 @@ TEST(Ace, growth_along_a_path_is_bounded)
 {
     nav_params_t params;
     nav_params_default(&params);
-    const nav_uncertainty_t start = {0.04, 0.01, 0.3};
+    const nav_uncertainty_t start = {0.01, 0.004, 0.3};
     const nav_uncertainty_t near = nav_ace_grow(&params, &start, 1.0);
     const nav_uncertainty_t far = nav_ace_grow(&params, &start, 100.0);
-    EXPECT_NEAR(0.04 + params.uncertainty_growth, near.position_m, 1e-12);
+    EXPECT_NEAR(0.01 + params.uncertainty_growth, near.position_m, 1e-12);
+    EXPECT_NEAR(0.004 + params.uncertainty_yaw_growth_rad_per_m, near.yaw_rad, 1e-12);
     EXPECT_DOUBLE_EQ(params.uncertainty_position_max_m, far.position_m);
     EXPECT_DOUBLE_EQ(params.uncertainty_yaw_max_rad, far.yaw_rad);
     EXPECT_DOUBLE_EQ(0.3, far.global_position_m);

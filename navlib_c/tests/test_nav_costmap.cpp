@@ -93,6 +93,13 @@ class NavCostmap : public ::testing::Test
         return map->cells[index];
     }
 
+    // ACE's verdict along a heading at (3, 3)
+    void feed_back(int heading, nav_reason_t reason)
+    {
+        const nav_pose2_t pose = {3.0, 3.0, heading * (NAV_PI / NAV_HEADINGS)};
+        nav_costmap_feedback(map.get(), &pose, reason);
+    }
+
     nav_cost_cell_t &by_global(int row, int col)
     {
         return map->cells[(row - map->origin_row) * kSize + col - map->origin_col];
@@ -198,7 +205,7 @@ TEST_F(NavCostmap, StartsUnknownAtTheFiniteCostOfUnknownGround)
     for (const nav_cost_cell_t &cell : map->cells)
     {
         ASSERT_FLOAT_EQ(cell.cost_s_per_m, static_cast<float>(1.5 / 0.042));
-        ASSERT_EQ(nav_costmap_reason(&cell, &params, true, true), NAV_REASON_NONE);
+        ASSERT_EQ(nav_costmap_reason(&cell, true, true), NAV_REASON_NONE);
     }
 }
 
@@ -421,8 +428,8 @@ TEST_F(NavCostmap, TiltAboveTheLimitIsInfinite)
     EXPECT_EQ(at(0, 0).terrain_reason, NAV_REASON_TILT);
     EXPECT_EQ(at(0, 0).is_known, 1U);
     EXPECT_NEAR(at(0, 0).plane_dz_dy, -limit * 1.0001, 1e-6);
-    EXPECT_EQ(nav_costmap_reason(&at(0, 0), &params, true, false), NAV_REASON_TILT);
-    EXPECT_EQ(nav_costmap_reason(&at(0, 0), &params, false, true), NAV_REASON_NONE);
+    EXPECT_EQ(nav_costmap_reason(&at(0, 0), true, false), NAV_REASON_TILT);
+    EXPECT_EQ(nav_costmap_reason(&at(0, 0), false, true), NAV_REASON_NONE);
 }
 
 TEST_F(NavCostmap, APatchIsKnownFromItsLeastShareOn)
@@ -463,7 +470,7 @@ TEST_F(NavCostmap, GroundKnownAlongOneLineOnlyIsUnexpected)
         const nav_cost_cell_t &cell = at(0.25, 0.25);
         EXPECT_EQ(cell.is_known, 0U);
         EXPECT_EQ(cell.terrain_reason, NAV_REASON_UNEXPECTED) << kind;
-        EXPECT_EQ(nav_costmap_reason(&cell, &params, true, true), NAV_REASON_UNEXPECTED);
+        EXPECT_EQ(nav_costmap_reason(&cell, true, true), NAV_REASON_UNEXPECTED);
     }
 }
 
@@ -508,8 +515,8 @@ TEST_F(NavCostmap, ZonesForbidCellsByTheirCentre)
             ASSERT_EQ(by_global(row, col).is_forbidden, (distance <= 2.5) ? 1U : 0U);
         }
     }
-    EXPECT_EQ(nav_costmap_reason(&at(20, 0), &params, true, true), NAV_REASON_KIOZ);
-    EXPECT_EQ(nav_costmap_reason(&at(20, 0), &params, true, false), NAV_REASON_NONE);
+    EXPECT_EQ(nav_costmap_reason(&at(20, 0), true, true), NAV_REASON_KIOZ);
+    EXPECT_EQ(nav_costmap_reason(&at(20, 0), true, false), NAV_REASON_NONE);
     nav_kioz_set(&kioz, &zone, 0U);
     update(0.5);
     EXPECT_EQ(at(20, 0).is_forbidden, 0U);
@@ -521,80 +528,117 @@ TEST_F(NavCostmap, ZonesComeBeforeTerrainAndTerrainBeforeAce)
     cell.is_forbidden = 1U;
     cell.terrain_reason = NAV_REASON_TILT;
     cell.ace_reason = NAV_REASON_CLEARANCE;
-    cell.ace_failed_count = 3U;
-    EXPECT_EQ(nav_costmap_reason(&cell, &params, true, true), NAV_REASON_KIOZ);
-    EXPECT_EQ(nav_costmap_reason(&cell, &params, true, false), NAV_REASON_TILT);
-    EXPECT_EQ(nav_costmap_reason(&cell, &params, false, false), NAV_REASON_NONE);
+    cell.ace_failed_headings = 0xFU;
+    EXPECT_EQ(nav_costmap_reason(&cell, true, true), NAV_REASON_KIOZ);
+    EXPECT_EQ(nav_costmap_reason(&cell, true, false), NAV_REASON_TILT);
+    EXPECT_EQ(nav_costmap_reason(&cell, false, false), NAV_REASON_NONE);
     cell.terrain_reason = NAV_REASON_NONE;
-    EXPECT_EQ(nav_costmap_reason(&cell, &params, true, false), NAV_REASON_CLEARANCE);
-    EXPECT_EQ(nav_costmap_reason(&cell, &params, false, false), NAV_REASON_NONE);
+    EXPECT_EQ(nav_costmap_reason(&cell, true, false), NAV_REASON_CLEARANCE);
+    EXPECT_EQ(nav_costmap_reason(&cell, false, false), NAV_REASON_NONE);
 }
 
-TEST_F(NavCostmap, EnoughFailuresCloseACellAndOnePassOpensIt)
+TEST_F(NavCostmap, AYawIsTheNearestOfFourHeadingsForwardsOrBackwards)
 {
-    nav_costmap_feedback(map.get(), 3.0, 3.0, NAV_REASON_CLEARANCE);
-    nav_costmap_feedback(map.get(), 3.0, 3.0, NAV_REASON_CLEARANCE);
-    EXPECT_EQ(nav_costmap_reason(&at(3, 3), &params, true, true), NAV_REASON_NONE);
-    nav_costmap_feedback(map.get(), 3.0, 3.0, NAV_REASON_WHEEL_DROP);
-    EXPECT_EQ(nav_costmap_reason(&at(3, 3), &params, true, true), NAV_REASON_WHEEL_DROP);
-    nav_costmap_feedback(map.get(), 3.0, 3.0, NAV_REASON_NONE);
-    EXPECT_EQ(at(3, 3).ace_failed_count, 0U);
-    EXPECT_EQ(nav_costmap_reason(&at(3, 3), &params, true, true), NAV_REASON_NONE);
+    const double eighth = NAV_PI / 8.0;
+    for (int turn = -9; turn <= 9; turn++)
+    {
+        const uint32_t heading = static_cast<uint32_t>(((turn % 4) + 4) % 4);
+        const double yaw_rad = 2.0 * eighth * turn;
+        EXPECT_EQ(heading, nav_costmap_heading(yaw_rad)) << turn;
+        EXPECT_EQ(heading, nav_costmap_heading(yaw_rad + 0.99 * eighth)) << turn;
+        EXPECT_EQ(heading, nav_costmap_heading(yaw_rad - 0.99 * eighth)) << turn;
+    }
+}
+
+TEST_F(NavCostmap, ACellIsClosedWhenAceFailedAlongEveryHeadingAndOnePassOpensIt)
+{
+    for (int heading = 0; heading < NAV_HEADINGS; heading++)
+    {
+        EXPECT_EQ(nav_costmap_reason(&at(3, 3), true, true), NAV_REASON_NONE) << heading;
+        feed_back(heading, NAV_REASON_CLEARANCE);
+        feed_back(heading, NAV_REASON_WHEEL_DROP);
+    }
+    EXPECT_EQ(nav_costmap_reason(&at(3, 3), true, true), NAV_REASON_WHEEL_DROP);
+    EXPECT_EQ(nav_costmap_reason(&at(3, 3), false, true), NAV_REASON_NONE);
+    feed_back(2, NAV_REASON_NONE);
+    EXPECT_EQ(at(3, 3).ace_failed_headings, 0b1011U);
+    EXPECT_EQ(nav_costmap_reason(&at(3, 3), true, true), NAV_REASON_NONE);
+}
+
+TEST_F(NavCostmap, AFailureBackwardsIsOneAlongTheSameHeading)
+{
+    const nav_pose2_t back = {3.0, 3.0, -NAV_PI + 0.25 * NAV_PI};
+    nav_costmap_feedback(map.get(), &back, NAV_REASON_CLEARANCE);
+    EXPECT_EQ(at(3, 3).ace_failed_headings, 0b0010U);
+    feed_back(1, NAV_REASON_NONE);
+    EXPECT_EQ(at(3, 3).ace_failed_headings, 0U);
+}
+
+TEST_F(NavCostmap, AHeadingIsBarredByObstaclesOrByAFailureOfAce)
+{
+    nav_cost_cell_t cell = {};
+    EXPECT_EQ(nav_costmap_barred(&cell), 0U);
+    cell.barred_headings = 0b0011U;
+    cell.ace_failed_headings = 0b1010U;
+    EXPECT_EQ(nav_costmap_barred(&cell), 0b1011U);
+}
+
+TEST_F(NavCostmap, BarredHeadingsAloneCloseNoCell)
+{
+    nav_cost_cell_t cell = {};
+    cell.barred_headings = 0xFU;
+    cell.ace_failed_headings = 0b0111U;
+    EXPECT_EQ(nav_costmap_reason(&cell, true, true), NAV_REASON_NONE);
 }
 
 TEST_F(NavCostmap, FeedbackOutsideTheMapIsDropped)
 {
-    nav_costmap_feedback(map.get(), 100.0, 3.0, NAV_REASON_CLEARANCE);
+    const nav_pose2_t outside = {100.0, 3.0, 0.0};
+    nav_costmap_feedback(map.get(), &outside, NAV_REASON_CLEARANCE);
     for (const nav_cost_cell_t &cell : map->cells)
     {
-        ASSERT_EQ(cell.ace_failed_count, 0U);
+        ASSERT_EQ(cell.ace_failed_headings, 0U);
     }
 }
 
-TEST_F(NavCostmap, TheCountOfFailuresDoesNotOverflow)
-{
-    for (int i = 0; i < 70000; i++)
-    {
-        nav_costmap_feedback(map.get(), 3.0, 3.0, NAV_REASON_BOGIE);
-    }
-    EXPECT_EQ(at(3, 3).ace_failed_count, 65535U);
-}
-
-TEST_F(NavCostmap, ACellClosedByAceIsOpenedAfterItsCycles)
+TEST_F(NavCostmap, AceIsForgottenAfterItsCyclesWithoutAFailure)
 {
     params.ace_feedback_cycles = 2.0;
     update();
-    for (int i = 0; i < 3; i++)
+    for (int heading = 0; heading < NAV_HEADINGS; heading++)
     {
-        nav_costmap_feedback(map.get(), 3.0, 3.0, NAV_REASON_BOGIE);
+        feed_back(heading, NAV_REASON_BOGIE);
     }
     update();
     update();
-    EXPECT_EQ(nav_costmap_reason(&at(3, 3), &params, true, true), NAV_REASON_BOGIE);
+    EXPECT_EQ(nav_costmap_reason(&at(3, 3), true, true), NAV_REASON_BOGIE);
     update();
-    EXPECT_EQ(at(3, 3).ace_failed_count, 0U);
+    EXPECT_EQ(at(3, 3).ace_failed_headings, 0U);
     EXPECT_EQ(at(3, 3).ace_reason, NAV_REASON_NONE);
     params.ace_feedback_cycles = 0.0;
-    nav_costmap_feedback(map.get(), 3.0, 3.0, NAV_REASON_BOGIE);
+    feed_back(0, NAV_REASON_BOGIE);
     update();
-    EXPECT_EQ(at(3, 3).ace_failed_count, 0U);
+    EXPECT_EQ(at(3, 3).ace_failed_headings, 0U);
 }
 
 TEST_F(NavCostmap, TheCycleMayWrapAround)
 {
     map->cycle = UINT32_MAX;
-    nav_costmap_feedback(map.get(), 3.0, 3.0, NAV_REASON_BOGIE);
+    feed_back(0, NAV_REASON_BOGIE);
     update();
     EXPECT_EQ(map->cycle, 0U);
-    EXPECT_EQ(at(3, 3).ace_failed_count, 1U);
+    EXPECT_EQ(at(3, 3).ace_failed_headings, 1U);
 }
 
-TEST_F(NavCostmap, ClearingFeedbackOpensEveryCell)
+TEST_F(NavCostmap, ClearingFeedbackOpensEveryCellAndLeavesObstacles)
 {
-    nav_costmap_feedback(map.get(), 3.0, 3.0, NAV_REASON_BOGIE);
-    nav_costmap_feedback(map.get(), -24.0, 24.0, NAV_REASON_ROCKER);
+    const nav_pose2_t corner = {-24.0, 24.0, 0.0};
+    feed_back(0, NAV_REASON_BOGIE);
+    nav_costmap_feedback(map.get(), &corner, NAV_REASON_ROCKER);
+    at(3, 3).barred_headings = 0b0100U;
     nav_costmap_clear_feedback(map.get());
-    EXPECT_EQ(at(3, 3).ace_failed_count, 0U);
+    EXPECT_EQ(nav_costmap_barred(&at(3, 3)), 0b0100U);
+    EXPECT_EQ(at(-24, 24).ace_failed_headings, 0U);
     EXPECT_EQ(at(-24, 24).ace_reason, NAV_REASON_NONE);
 }
 

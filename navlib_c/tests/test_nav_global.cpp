@@ -68,6 +68,16 @@ class NavGlobal : public ::testing::Test
         at(row, col).terrain_reason = NAV_REASON_TILT;
     }
 
+    // how much dearer a step is for what bars its heading at its ends, or at both its sides
+    double factor(int row, int col, int r, int c) const
+    {
+        const auto barred = [this](int i, int j)
+        { return nav_costmap_barred(&map->cells[i * kSize + j]); };
+        const int heading = (r == row) ? 2 : ((c == col) ? 0 : (((r > row) == (c > col)) ? 1 : 3));
+        const uint32_t bits = barred(row, col) | barred(r, c) | (barred(row, c) & barred(r, col));
+        return ((bits >> heading) & 1U) != 0U ? params.cost_barred_factor : 1.0;
+    }
+
     void make_random(uint64_t seed, double blocked_share)
     {
         std::mt19937_64 random(seed);
@@ -78,6 +88,8 @@ class NavGlobal : public ::testing::Test
             cell.terrain_reason = (static_cast<double>(costs(random)) < blocked_share)
                                       ? NAV_REASON_TILT
                                       : NAV_REASON_NONE;
+            cell.barred_headings = static_cast<uint8_t>(random() & random() & random() & 0xFU);
+            cell.ace_failed_headings = static_cast<uint8_t>(random() & random() & random() & 0xFU);
         }
     }
 
@@ -112,8 +124,9 @@ class NavGlobal : public ::testing::Test
                         (static_cast<double>(map->cells[cell].cost_s_per_m) +
                          static_cast<double>(map->cells[r * kSize + c].cost_s_per_m)) /
                         2;
-                    const double next = cost_s[static_cast<size_t>(cell)] +
-                                        kCell * std::hypot(r - row, c - col) * mean;
+                    const double next =
+                        cost_s[static_cast<size_t>(cell)] +
+                        kCell * std::hypot(r - row, c - col) * mean * factor(row, col, r, c);
                     double &known = cost_s[static_cast<size_t>(r * kSize + c)];
                     if (next < known - 1e-12)
                     {
@@ -260,7 +273,8 @@ TEST_F(NavGlobal, EveryCostIsTheLeastThroughANeighbourToTheLastBit)
                                             0.5;
                         const double length =
                             (r != row && c != col) ? kCell * 1.41421356237309504880169 : kCell;
-                        least = std::min(least, to_go(r, c) + length * mean);
+                        least =
+                            std::min(least, to_go(r, c) + length * mean * factor(row, col, r, c));
                     }
                 }
             }
@@ -368,6 +382,73 @@ TEST_F(NavGlobal, NoPathSqueezesBetweenTwoBlockedCornersButOneMayBePassed)
     EXPECT_LT(to_go(90, 90), NAV_COST_INFINITE);
 }
 
+TEST_F(NavGlobal, AWayAlongABarredHeadingIsDearerIntoTheCellAndOutOfIt)
+{
+    for (int row = 0; row < kSize; row++)
+    {
+        block(row, 49);
+        block(row, 51); // a corridor north, one cell wide
+    }
+    const auto cost_s = [this]
+    {
+        plan(goal_at(60, 50));
+        return to_go(40, 50);
+    };
+    EXPECT_NEAR(cost_s(), 20 * kCell, 1e-9);
+    at(50, 50).barred_headings = 0b1110U; // across the corridor
+    EXPECT_NEAR(cost_s(), 20 * kCell, 1e-9);
+    at(50, 50).barred_headings = 0b0001U;
+    EXPECT_NEAR(cost_s(), (18 + 2 * params.cost_barred_factor) * kCell, 1e-9);
+    at(50, 50).barred_headings = 0U;
+    at(50, 50).ace_failed_headings = 0b0001U;
+    EXPECT_NEAR(cost_s(), (18 + 2 * params.cost_barred_factor) * kCell, 1e-9);
+    EXPECT_EQ(descend(center(40), center(50)).size(), 21U);
+}
+
+TEST_F(NavGlobal, ADetourIsTakenWhileItIsCheaperThanTheBarredWay)
+{
+    for (int col = 45; col <= 55; col++)
+    {
+        at(50, col).barred_headings = 0xFU;
+    }
+    plan(goal_at(60, 50));
+    for (const nav_point_t &p : descend(center(40), center(50)))
+    {
+        EXPECT_FALSE(static_cast<double>(p.x_m) == center(50) &&
+                     std::fabs(static_cast<double>(p.y_m) - center(50)) < 5.5 * kCell);
+    }
+    params.cost_barred_factor = 1.01;
+    plan(goal_at(60, 50));
+    EXPECT_EQ(descend(center(40), center(50)).size(), 21U);
+}
+
+TEST_F(NavGlobal, SqueezingBetweenTwoBarredCornersIsDearerButOneMayBePassed)
+{
+    const auto cost_s = [this]
+    {
+        plan(goal_at(50, 50));
+        return to_go(51, 51);
+    };
+    at(50, 51).barred_headings = 0b0010U;
+    EXPECT_NEAR(cost_s(), std::sqrt(2.0) * kCell, 1e-9);
+    at(51, 50).barred_headings = 0b1101U;
+    EXPECT_NEAR(cost_s(), std::sqrt(2.0) * kCell, 1e-9);
+    at(51, 50).barred_headings = 0b0010U;
+    EXPECT_NEAR(cost_s(), 2 * kCell, 1e-9); // round the corner
+}
+
+TEST_F(NavGlobal, WithoutTerrainNothingIsBarred)
+{
+    for (nav_cost_cell_t &cell : map->cells)
+    {
+        cell.barred_headings = 0xFU;
+        cell.ace_failed_headings = 0xFU;
+        cell.ace_reason = NAV_REASON_CLEARANCE;
+    }
+    plan(goal_at(60, 50), false, true);
+    EXPECT_NEAR(to_go(40, 50), 20 * kCell * flat_s_per_m, 1e-9);
+}
+
 TEST_F(NavGlobal, ModesDecideWhatBlocks)
 {
     at(50, 50).terrain_reason = NAV_REASON_TILT;
@@ -439,8 +520,9 @@ TEST_F(NavGlobal, CostToGoFromAPositionIsTheLeastOverItsNeighbourhood)
                     const double mean = (static_cast<double>(at(row, col).cost_s_per_m) +
                                          static_cast<double>(at(r, c).cost_s_per_m)) /
                                         2;
-                    least = std::min(least,
-                                     to_go(r, c) + mean * std::hypot(center(r) - x, center(c) - y));
+                    const double own = (r == row && c == col) ? 1.0 : factor(row, col, r, c);
+                    least = std::min(
+                        least, to_go(r, c) + mean * std::hypot(center(r) - x, center(c) - y) * own);
                 }
             }
         }
@@ -489,7 +571,9 @@ TEST_F(NavGlobal, DescentFollowsTheCheapestCellsToASeed)
             cost_s += std::hypot(dx, dy) *
                       (static_cast<double>(map->cells[a].cost_s_per_m) +
                        static_cast<double>(map->cells[b].cost_s_per_m)) /
-                      2;
+                      2 *
+                      factor(static_cast<int>(a) / kSize, static_cast<int>(a) % kSize,
+                             static_cast<int>(b) / kSize, static_cast<int>(b) % kSize);
         }
         EXPECT_NEAR(cost_s, to_go(start, 20), 1e-4 * cost_s);
         EXPECT_LE(std::hypot(static_cast<double>(points.back().x_m) - goal.x_site_m,

@@ -419,4 +419,29 @@ TEST_F(Interface, a_keep_in_zone_is_shrunk_by_the_global_uncertainty)
     EXPECT_EQ(static_cast<uint32_t>(NAV_REASON_KIOZ), out->reason);
 }
 
+TEST_F(Interface, what_ace_refused_is_forgotten_only_where_it_left_no_path_to_test)
+{
+    const auto failures = [this]
+    {
+        uint32_t count = 0U;
+        for (const nav_cost_cell_t &cell : scene.ctx->costmap.cells)
+        {
+            count += (cell.ace_failed_headings != 0U) ? 1U : 0U;
+        }
+        return count;
+    };
+    scene.show(
+        [](double x, double y)
+        {
+            const double r = std::hypot(x, y);
+            return ((r > 2.2) && (r < 3.2)) ? 1.0 : 0.0;
+        });
+    EXPECT_GT(scene.select(NAV_MODE_AVOID_ALL, NAV_NO_PATH)->paths_tested, 0U);
+    EXPECT_GT(failures(), 0U);
+    scene.zones({circle(NAV_ZONE_KEEP_IN, 0.0, 0.0, 0.4)});
+    scene.analyze();
+    EXPECT_EQ(0U, scene.select(NAV_MODE_AVOID_ALL, NAV_NO_PATH)->paths_tested);
+    EXPECT_EQ(0U, failures());
+}
+
 } // namespace

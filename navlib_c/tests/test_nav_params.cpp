@@ -138,8 +138,7 @@ TEST(NavParams, TheFirstParameterRefusedIsNamed)
 
 TEST(NavParams, CountsMustBeWhole)
 {
-    for (const char *name : {"surface_fill_neighbors", "ace_feedback_poses", "ace_feedback_cycles",
-                             "ace_budget_poses"})
+    for (const char *name : {"surface_fill_neighbors", "ace_feedback_cycles", "ace_budget_poses"})
     {
         expect_conflict(with(index_of(name), 2.5), name);
         expect_ok(with(index_of(name), 4.0));
