@@ -17,7 +17,7 @@ from sim.config import ConfigModel, parse_model
 from sim.frames import rotation
 from sim.raycast import RayCaster
 from sim.settle import SettledState
-from sim.stereo_noise import correlated_field, dropouts, range_sigma_m
+from sim.stereo_noise import correlated_field, dropouts, slid_points_m
 from sim.terrain import Terrain
 from sim.vehicle import Vehicle
 
@@ -225,52 +225,37 @@ class StereoCamera:
     def _cloud(
         self, state: SettledState, view: _View, rng: np.random.Generator
     ) -> npt.NDArray[np.float32]:
-        seen_m = self._ranges_m(state, view)
-        hit = np.flatnonzero(seen_m >= self._config.range_min_m)  # NaN is no hit
-        hit = self._matched(view, hit, rng)
-        directions, ranges = view.directions[hit], seen_m[hit].astype(np.float64)
-        slid = self._slid_m(view, hit, directions, ranges, rng)
-        if slid is not None:
-            ahead = slid > 0.0
-            directions, ranges = directions[ahead], slid[ahead]
-        directions *= ranges[:, None]
-        directions += view.center_m
-        return directions.astype(np.float32)
+        config = self._config
+        ranges = self._ranges_m(state, view)
+        ranges[ranges < config.range_min_m] = np.nan
+        if config.dropout_fraction > 0.0:
+            lost = dropouts(config.dropout_fraction, self._shape, self._correlation_length_px, rng)
+            ranges[lost.ravel()[view.pixels]] = np.nan
+        return slid_points_m(
+            ranges,
+            view.directions,
+            view.center_m,
+            view.baseline_m,
+            self._left.fov_rad[0] / config.stereo_image_width_px,
+            self._error_px(view.pixels, ~np.isnan(ranges), rng),
+        )
 
-    def _matched(
-        self, view: _View, hit: npt.NDArray[np.intp], rng: np.random.Generator
-    ) -> npt.NDArray[np.intp]:
-        """Those of the hits that matching finds."""
-        fraction = self._config.dropout_fraction
-        if fraction <= 0.0:
-            return hit
-        lost = dropouts(fraction, self._shape, self._correlation_length_px, rng).ravel()
-        return hit[~lost[view.pixels[hit]]]
-
-    def _slid_m(
+    def _error_px(
         self,
-        view: _View,
-        hit: npt.NDArray[np.intp],
-        directions: Array,
-        ranges_m: Array,
+        pixels: npt.NDArray[np.intp],
+        seen: npt.NDArray[np.bool_],
         rng: np.random.Generator,
     ) -> Array | None:
-        """Ranges with the error of matching; None without one."""
+        """Error of matching of those pixels that are seen; None without one."""
         config = self._config
         error_px: Array | None = None
         if config.disparity_correlated_sigma_px > 0.0:
             field = correlated_field(self._shape, self._correlation_length_px, rng).ravel()
-            error_px = config.disparity_correlated_sigma_px * field[view.pixels[hit]]
+            error_px = config.disparity_correlated_sigma_px * field[pixels[seen]]
         if config.disparity_sigma_px > 0.0:
-            own_px = config.disparity_sigma_px * rng.standard_normal(len(hit))
+            own_px = config.disparity_sigma_px * rng.standard_normal(np.count_nonzero(seen))
             error_px = own_px if error_px is None else error_px + own_px
-        if error_px is None:
-            return None
-        pixel_rad = self._left.fov_rad[0] / config.stereo_image_width_px
-        slid: Array = ranges_m + error_px * range_sigma_m(
-            ranges_m, directions, view.baseline_m, pixel_rad
-        )
-        return slid
+        return error_px
 
     @property
     def _shape(self) -> tuple[int, int]:

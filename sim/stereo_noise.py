@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What stereo matching does to ranges: SIM equation (1), correlated errors, dropouts."""
+"""What stereo matching does to ranges: SIM equation (1), correlated errors, dropouts.
+
+Kernel of the equation: `kernels/cloud.c`.
+"""
 
 import math
 from statistics import NormalDist
@@ -8,36 +11,52 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
 
+from sim.clib import ffi, lib, pointer
+
 Array = npt.NDArray[np.float64]
 
 # kernels are cut at this many standard deviations
 TRUNCATE = 4.0
 
 
-def range_sigma_m(
-    ranges_m: Array,
+def slid_points_m(
+    ranges_m: npt.NDArray[np.float32],
     directions: Array,
+    center_m: Array,
     baseline_m: Array,
-    pixel_sigma_rad: float,
-) -> Array:
-    """Standard deviation [n] of the range along the left ray, SIM equation (1).
+    pixel_rad: float,
+    error_px: Array | None,
+) -> npt.NDArray[np.float32]:
+    """Points [m, 3] that matching makes of ranges: slid along their left rays, equation (1).
 
-    sigma = pixel_sigma * d / sin(theta), with d the distance to the right camera and theta the
-    angle between the cameras seen from the point. By the sine rule d / sin(theta) equals
-    d^2 / |baseline x ray|, which stays exact for far points.
+    Those that would come out behind the camera are dropped.
 
     Args:
-        ranges_m: Distances [n] from the left camera.
+        ranges_m: True distances [n] from the left camera; NaN gives no point.
         directions: Unit vectors [n, 3] of the left rays.
+        center_m: Left camera centre [3], same frame.
         baseline_m: Right minus left camera centre [3], same frame.
-        pixel_sigma_rad: Correlation error as an angle: sigma_px / width_px * field of view.
+        pixel_rad: Angle of a pixel of the matched images: field of view / width_px.
+        error_px: Of the matching, one for each range that is not NaN; None is no error.
     """
-    along = directions @ baseline_m
-    baseline2 = float(baseline_m @ baseline_m)
-    distance2 = ranges_m**2 - 2.0 * ranges_m * along + baseline2
-    height = np.sqrt(np.maximum(baseline2 - along**2, 1e-12))
-    sigma: Array = pixel_sigma_rad * distance2 / height
-    return sigma
+    points = np.empty((len(ranges_m), 3), dtype=np.float32)
+    stereo = ffi.new(
+        "sim_stereo_t *",
+        {
+            "center_m": center_m.tolist(),
+            "baseline_m": baseline_m.tolist(),
+            "pixel_rad": pixel_rad,
+            "directions": pointer(directions, "const double *"),
+            "count": len(ranges_m),
+        },
+    )
+    count = lib.sim_cloud(
+        stereo,
+        pointer(ranges_m, "const float *"),
+        ffi.NULL if error_px is None else pointer(error_px, "const double *"),
+        pointer(points, "float *"),
+    )
+    return points[:count]
 
 
 def correlated_field(

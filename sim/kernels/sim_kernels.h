@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file sim_kernels.h
- * @brief The two hot loops of the simulator: rocker-bogie settling and ray casting.
+ * @brief The hot loops of the simulator: rocker-bogie settling, ray casting, point clouds.
  *
  * Frames: SITE x north, y east, z down. Rover x forward, y right, z down, origin on the ground
  * under the middle axle. Attitude R = Rz(yaw) Ry(pitch) Rx(roll) maps rover to SITE. Metres, radians.
@@ -164,5 +164,29 @@ void sim_raycast(const sim_terrain_t *terrain,
                  const sim_rays_t *rays,
                  float *table,
                  float *range_m);
+
+/**
+ * A stereo pair whose left camera, at center_m, looks along count unit vectors. The right one stands
+ * baseline_m from it; pixel_rad is the angle of a pixel of the images that are matched.
+ */
+typedef struct
+{
+    double center_m[3];
+    double baseline_m[3];
+    double pixel_rad;
+    const double *directions;
+    int32_t count;
+    int32_t reserved;
+} sim_stereo_t;
+
+/**
+ * Points (x, y, z each) at the ranges along the left rays, none where a range is NaN; returns their
+ * number. error_px holds the error of matching of each range that is not, in their order; it slides
+ * the point along its ray, and what would come out behind the camera is dropped. NULL is no error.
+ */
+int32_t sim_cloud(const sim_stereo_t *stereo,
+                  const float *range_m,
+                  const double *error_px,
+                  float *point_m);
 
 #endif

@@ -10,6 +10,7 @@ import numpy.typing as npt
 import pytest
 
 from sim.generate import TerrainRecipe, generate
+from sim.stereo_noise import slid_points_m
 from sim.terrain import Terrain, centred
 from sim.vehicle import Vehicle, load_vehicle
 
@@ -22,6 +23,21 @@ def terrain_of(up_m: Surface, size_m: float = 20.0, resolution_m: float = 0.1) -
     axis = (np.arange(count) - 0.5 * (count - 1)) * resolution_m
     north, east = np.meshgrid(axis, axis, indexing="ij")
     return centred((-up_m(north, east)).astype(np.float32), resolution_m)
+
+
+def range_sigma_m(
+    ranges_m: npt.NDArray[np.float64],
+    directions: npt.NDArray[np.float64],
+    baseline_m: npt.NDArray[np.float64],
+    pixel_sigma_rad: float,
+) -> npt.NDArray[np.float64]:
+    """Standard deviation [n] of the range: how far a million of them slide the points."""
+    million = np.full(len(ranges_m), 1e6)
+    ranges = ranges_m.astype(np.float32)
+    points = slid_points_m(ranges, directions, np.zeros(3), baseline_m, pixel_sigma_rad, million)
+    slid_m = np.linalg.norm(points.astype(float), axis=1) - ranges
+    sigma_m: npt.NDArray[np.float64] = slid_m / million
+    return sigma_m
 
 
 @pytest.fixture(scope="session")

@@ -12,9 +12,8 @@ from sim.config import parse_model
 from sim.errors import ConfigError
 from sim.frames import rotation
 from sim.settle import SettledState, Settler
-from sim.stereo_noise import range_sigma_m
 from sim.terrain import Terrain
-from sim.tests.conftest import terrain_of
+from sim.tests.conftest import range_sigma_m, terrain_of
 from sim.vehicle import Vehicle
 
 RNG = np.random.default_rng

@@ -6,7 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from sim.stereo_noise import correlated_field, dropouts, range_sigma_m
+from sim.stereo_noise import correlated_field, dropouts, slid_points_m
+from sim.tests.conftest import range_sigma_m
 
 RNG = np.random.default_rng
 PIXEL_RAD = 1.0 / 1280 * math.radians(96)
@@ -53,6 +54,20 @@ def test_the_formula_is_the_derivative_of_triangulation() -> None:
         met = np.linalg.lstsq(np.stack([direction, -ray], axis=1), baseline, rcond=None)[0]
         sigma = range_sigma_m(np.array([range_m]), direction[None], baseline, turn_rad)
         assert abs(met[0] - range_m) == pytest.approx(sigma[0], rel=1e-3)
+
+
+def test_points_slide_along_their_rays_and_none_comes_out_behind_the_camera() -> None:
+    ranges = np.array([math.nan, 5, 10, math.nan, 20], np.float32)
+    directions = np.tile([0.6, 0.0, 0.8], (5, 1))
+    center, baseline = np.array([1.0, 2, 3]), np.array([0, 0.5, 0])
+    # the right camera is at right angles to the rays: sigma = pixel (r^2 + b^2) / b
+    near, middle, far = slid_points_m(ranges, directions, center, baseline, 1e-3, None)
+    np.testing.assert_allclose(near, center + 5 * directions[0], rtol=1e-6)
+    np.testing.assert_allclose(middle, center + 10 * directions[0], rtol=1e-6)
+    np.testing.assert_allclose(far, center + 20 * directions[0], rtol=1e-6)
+    moved = slid_points_m(ranges, directions, center, baseline, 1e-3, np.array([2.0, -1, -25]))
+    slid = np.array([5 + 2e-3 * 25.25 / 0.5, 10 - 1e-3 * 100.25 / 0.5])
+    np.testing.assert_allclose(moved, center + slid[:, None] * directions[:2], rtol=1e-6)
 
 
 def test_a_correlated_field_has_unit_variance_and_its_length() -> None:
