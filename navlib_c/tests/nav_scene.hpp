@@ -91,10 +91,15 @@ class Scene
         return out;
     }
 
+    nav_ace_scene_t ace_scene()
+    {
+        return {&ctx->params,  &ctx->vehicle, &ctx->surface,
+                &ctx->costmap, &ctx->relief,  &ctx->ace_work};
+    }
+
     nav_ace_bounds_t ace(double x_m, double y_m, double yaw_rad, const nav_uncertainty_t &u = {})
     {
-        const nav_ace_scene_t scene = {&ctx->params,  &ctx->vehicle, &ctx->surface,
-                                       &ctx->costmap, &ctx->relief,  &ctx->ace_work};
+        const nav_ace_scene_t scene = ace_scene();
         const nav_pose2_t pose = {x_m, y_m, yaw_rad};
         nav_ace_bounds_t bounds;
         nav_ace_evaluate(&scene, &pose, &u, false, &bounds);
@@ -104,11 +109,7 @@ class Scene
     /// What the tree works with.
     nav_tree_scene_t tree_scene()
     {
-        return {{&ctx->params, &ctx->vehicle, &ctx->surface, &ctx->costmap, &ctx->relief},
-                &ctx->kioz,
-                &ctx->global,
-                &ctx->tree_shapes,
-                &ctx->costmap};
+        return {ace_scene(), &ctx->kioz, &ctx->global, &ctx->tree_shapes, &ctx->costmap};
     }
 
     std::unique_ptr<nav_select_arc_out_t> select(nav_mode_t mode, nav_status_t expected = NAV_OK)
