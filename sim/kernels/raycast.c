@@ -7,7 +7,7 @@
  * each sector into bins of distance. For every bin of a sector one number is kept: how steeply a ray
  * must at least descend to touch the highest ground in it. A ray skips all bins that ask for more,
  * and in the others it is intersected with the surface, cell by cell. Sectors are made when their
- * first ray comes.
+ * first ray comes; the next rays look for their first bin near that of the ray before.
  */
 #include <math.h>
 #include <stddef.h>
@@ -18,8 +18,6 @@
 #define RING_BINS 128
 #define BINS_MAX (RING_BINS + ((RING_BINS / 2) * (SIM_ROOF_LEVELS_MAX - 1)))
 #define SECTORS (5 * RING_BINS)
-/* a group of bins is skipped as one */
-#define GROUP 8
 /* bins marched in one go: beyond the hit all are candidates */
 #define RUN_BINS_MAX 4
 /* least descents are rounded down by this, far more than a float's rounding */
@@ -61,6 +59,8 @@ typedef struct
     double col0;
     double z0;
     double cells_per_m;
+    /* no ray leaves the map */
+    int inside;
     int32_t bins;
     double edge_m[BINS_MAX + 1];
     float *table;
@@ -202,7 +202,7 @@ static inline int32_t bin_edge(int32_t bin, int32_t *ring)
     return ((RING_BINS / 2) + (beyond % (RING_BINS / 2))) << level;
 }
 
-/* bins that reach as far as a ray can go, in whole groups */
+/* bins that reach as far as a ray can go */
 static int32_t bin_count(const sim_terrain_t *terrain, double range_max_m)
 {
     const double reach = range_max_m / terrain->resolution_m;
@@ -210,15 +210,18 @@ static int32_t bin_count(const sim_terrain_t *terrain, double range_max_m)
     int32_t ring = 0;
     while ((bins < BINS_MAX) && ((double) bin_edge(bins, &ring) < reach))
     {
-        bins += GROUP;
+        bins++;
     }
     return bins;
 }
 
-/* per sector: a mark, the least descents of its bins, the least of each group */
+/*
+ * Per sector: 1 + the bin where its last ray began, 0 when it is not made; the least descents of its
+ * bins; the least of each bin and all before it.
+ */
 static ptrdiff_t sector_size(int32_t bins)
 {
-    return 1 + bins + (bins / GROUP);
+    return 1 + ((ptrdiff_t) 2 * bins);
 }
 
 int64_t sim_raycast_table_size(const sim_terrain_t *terrain, double range_max_m)
@@ -264,7 +267,7 @@ static void build_sector(const view_t *view, int32_t sector, float *descent)
     double d_row;
     double d_col;
     sector_middle(sector, &d_row, &d_col);
-    float *group = &descent[view->bins];
+    float *least_yet = &descent[view->bins];
     for (int32_t bin = 0; bin < view->bins; bin++)
     {
         int32_t ring;
@@ -278,13 +281,12 @@ static void build_sector(const view_t *view, int32_t sector, float *descent)
         const double cells = (depth >= 0.0) ? far : near;
         const float least = (float) (depth * view->cells_per_m / cells);
         descent[bin] = isinf(least) ? least : least - (DESCENT_SLACK * (1.0F + fabsf(least)));
-        group[bin / GROUP] =
-            ((bin % GROUP) == 0) ? descent[bin] : higher(group[bin / GROUP], descent[bin]);
+        least_yet[bin] = (bin == 0) ? descent[bin] : higher(least_yet[bin - 1], descent[bin]);
     }
 }
 
-/* least descents of the sector of a ray */
-static inline const float *sector_for(const view_t *view, const ray_t *ray)
+/* what is kept of the sector of a ray */
+static inline float *sector_for(const view_t *view, const ray_t *ray)
 {
     const int32_t sector = sector_of(ray->d_row, ray->d_col);
     float *table = &view->table[sector * sector_size(view->bins)];
@@ -293,23 +295,32 @@ static inline const float *sector_for(const view_t *view, const ray_t *ray)
         build_sector(view, sector, &table[1]);
         table[0] = 1.0F;
     }
-    return &table[1];
+    return table;
+}
+
+/* first bin that a ray can touch, or the number of bins; near that of its neighbour, the ray before */
+static inline int32_t first_bin(float *table, int32_t bins, float descent)
+{
+    const float *least_yet = &table[1 + bins];
+    int32_t bin = (int32_t) table[0] - 1;
+    while ((bin < bins) && (descent < least_yet[bin]))
+    {
+        bin++;
+    }
+    while ((bin > 0) && !(descent < least_yet[bin - 1]))
+    {
+        bin--;
+    }
+    table[0] = (float) (bin + 1);
+    return bin;
 }
 
 /* first bin from `bin` on that the ray can touch, or the number of bins */
 static inline int32_t next_bin(const float *least, int32_t bins, int32_t bin, float descent)
 {
-    const float *group = &least[bins];
     while ((bin < bins) && (descent < least[bin]))
     {
         bin++;
-        if ((bin % GROUP) == 0)
-        {
-            while ((bin < bins) && (descent < group[bin / GROUP]))
-            {
-                bin += GROUP;
-            }
-        }
     }
     return bin;
 }
@@ -427,22 +438,31 @@ static inline double inverse_of(double rate)
     return (fabs(rate) * STANDS_STILL > 1.0) ? 1.0 / rate : STANDS_STILL;
 }
 
+/* whether a place is on the map, that many cells from its edge */
+static int is_inside(const sim_terrain_t *terrain, double row, double col, double margin)
+{
+    return (row - margin >= 0.0) && (row + margin <= (double) (terrain->rows - 1)) &&
+           (col - margin >= 0.0) && (col + margin <= (double) (terrain->cols - 1));
+}
+
 /* horizontal distance of the first hit within r_max, or NaN */
 static double trace(const view_t *view, const ray_t *ray, double r_max)
 {
     const sim_terrain_t *terrain = view->terrain;
     double r_in = 0.0;
     double r_out = r_max;
-    if (!clip_axis(ray->row0, ray->inverse_row, (double) (terrain->rows - 1), &r_in, &r_out) ||
-        !clip_axis(ray->col0, ray->inverse_col, (double) (terrain->cols - 1), &r_in, &r_out))
+    if (!view->inside &&
+        (!clip_axis(ray->row0, ray->inverse_row, (double) (terrain->rows - 1), &r_in, &r_out) ||
+         !clip_axis(ray->col0, ray->inverse_col, (double) (terrain->cols - 1), &r_in, &r_out)))
     {
         return NAN;
     }
-    const float *least = sector_for(view, ray);
+    float *table = sector_for(view, ray);
+    const float *least = &table[1];
     const float descent = (float) ray->descent;
     double r_hit = NAN;
     double r_near = r_in;
-    int32_t bin = 0;
+    int32_t bin = first_bin(table, view->bins, descent);
     while (isnan(r_hit) && (r_near <= r_out) && (bin <= view->bins))
     {
         bin = next_bin(least, view->bins, bin, descent);
@@ -521,6 +541,8 @@ void sim_raycast(const sim_terrain_t *terrain,
     view.row0 = (rays->origin_site_m[0] - terrain->north_min_m) * view.cells_per_m;
     view.col0 = (rays->origin_site_m[1] - terrain->east_min_m) * view.cells_per_m;
     view.z0 = rays->origin_site_m[2];
+    view.inside =
+        is_inside(terrain, view.row0, view.col0, 1.0 + (rays->range_max_m * view.cells_per_m));
     view.bins = bin_count(terrain, rays->range_max_m);
     view.table = table;
     for (int32_t bin = 0; bin <= view.bins; bin++)

@@ -67,6 +67,16 @@ def test_attitude_turns_the_rays(rocky: Terrain) -> None:
     )
 
 
+def test_the_order_of_the_rays_does_not_matter(rocky: Terrain) -> None:
+    rng = np.random.default_rng(3)
+    directions = unit_vectors(rng, 5000, down=0.3)
+    order = rng.permutation(len(directions))
+    caster = RayCaster(rocky)
+    origin = [3, -4, float(rocky.height_at(3, -4)) - 1.9]
+    ranges = caster.ranges_m(origin, directions, 25)
+    np.testing.assert_array_equal(caster.ranges_m(origin, directions[order], 25), ranges[order])
+
+
 def test_no_ground_is_nan(flat: Terrain) -> None:
     caster = RayCaster(flat)
     up = np.array([[0.0, 0, -1], [1, 0, 0], [0.6, 0, -0.8]])
