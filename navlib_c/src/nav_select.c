@@ -17,10 +17,10 @@ typedef struct
     nav_trial_t trial;
     uint32_t candidate_count;
     uint32_t budget_end; /* of the trial's ace_evaluations */
-} search_t;
+} selection_t;
 
 /** Why the candidates after one that was tested are not: because one passed, or the budget is used up. */
-static nav_reason_t reason_of_rest(const search_t *search, nav_reason_t tested)
+static nav_reason_t reason_of_rest(const selection_t *search, nav_reason_t tested)
 {
     nav_reason_t rest = NAV_REASON_NONE;
     if ((tested == NAV_REASON_NONE) || search->trial.request->is_one_path)
@@ -40,7 +40,7 @@ static nav_reason_t reason_of_rest(const search_t *search, nav_reason_t tested)
 
 /** Tests the tree's paths from the cheapest, then, if none passed, the rest of the path selected
  * before. Paths not reached are rejected by cost or by the budget. */
-static void test_candidates(search_t *search, nav_select_arc_out_t *out)
+static void test_candidates(selection_t *search, nav_select_arc_out_t *out)
 {
     nav_tree_t *tree = search->trial.tree;
     nav_reason_t rest = NAV_REASON_NONE;
@@ -148,7 +148,7 @@ static bool is_found(const nav_select_arc_out_t *out)
 }
 
 /** Tests all candidates, then, where the mode looks for more than one path, the last resorts. */
-static void test_all(search_t *search, nav_select_arc_out_t *out)
+static void test_all(selection_t *search, nav_select_arc_out_t *out)
 {
     test_candidates(search, out);
     if (!is_found(out) && !search->trial.request->is_one_path)
@@ -162,7 +162,7 @@ static void test_all(search_t *search, nav_select_arc_out_t *out)
 }
 
 /** Makes the paths that ACE refused untested again, for the leave limits. */
-static void begin_leaving(search_t *search, nav_select_arc_out_t *out)
+static void begin_leaving(selection_t *search, nav_select_arc_out_t *out)
 {
     nav_tree_t *tree = search->trial.tree;
     search->trial.is_leaving = true;
@@ -187,9 +187,9 @@ void nav_select_path(nav_tree_t *tree,
                      nav_select_arc_out_t *out)
 {
     const nav_request_t request = nav_walk_request(scene, in);
-    search_t search = {.trial = {.request = &request, .tree = tree},
-                       .candidate_count = nav_rank_candidates(&request, tree),
-                       .budget_end = (uint32_t) request.params->ace_budget_poses};
+    selection_t search = {.trial = {.request = &request, .tree = tree},
+                          .candidate_count = nav_rank_candidates(&request, tree),
+                          .budget_end = (uint32_t) request.params->ace_budget_poses};
 
     out->path_index = (uint32_t) NAV_TREE_NONE;
     nav_trial_begin(&search.trial);
