@@ -255,12 +255,12 @@ types:
           - id: ace_cycle
             type: u4
             doc: 'analysis in which ACE last failed here'
-          - id: ace_failed_count
-            type: u2
-            doc: 'ACE poses failed here since one passed'
+          - id: ace_failed_headings
+            type: u1
+            doc: 'bit k: ACE failed last along heading k * 45 deg or back'
           - id: ace_reason
             type: u1
-            doc: 'nav_reason_t of the last of them'
+            doc: 'nav_reason_t of its last failure'
           - id: terrain_reason
             type: u1
             doc: 'nav_reason_t: tilt, unexpected, or none'
@@ -270,11 +270,20 @@ types:
           - id: is_forbidden
             type: u1
             doc: '1 when zones forbid it'
+          - id: barred_headings
+            type: u1
+            doc: 'bit k: obstacles under a rover that stands so'
           - id: pad_0
             type: u1
             repeat: expr
             repeat-expr: 2
             doc: 'zero'
+          - id: belly_obstacles
+            type: u4
+            doc: 'bit 5 * row + column: too high for the belly'
+          - id: wheel_obstacles
+            type: u4
+            doc: 'the same: too high or too deep for a wheel'
       nav_ace_bounds_t:
         seq:
           - id: clearance_min_m
@@ -364,7 +373,7 @@ types:
           - id: params
             type: f8
             repeat: expr
-            repeat-expr: 56
+            repeat-expr: 58
             doc: 'nav_params_t, in the order of its table'
       nav_init_out_t:
         seq:
@@ -508,7 +517,7 @@ types:
             doc: 'nav_status_t: OK or NO_PATH'
           - id: path_index
             type: u4
-            doc: 'selected candidate; 1694: the rest of the last one'
+            doc: 'selected; 1694 rest of the last path, 1695.. first arcs, 1849.. back'
           - id: arc
             type: nav_arc_t
             doc: 'what to drive next'
@@ -627,6 +636,11 @@ types:
             repeat: expr
             repeat-expr: 1695
             doc: 's, 1e12 when it crosses an infinite cell'
+          - id: first_cost_s
+            type: f8
+            repeat: expr
+            repeat-expr: 154
+            doc: 's, of a first arc alone'
           - id: kept
             type: nav_path_t
             doc: 'what is left of the selected path'

@@ -109,7 +109,7 @@ typedef struct
     double wheel_m; /* up or down */
 } nav_limits_t;
 
-static nav_limits_t limits_of(const nav_params_t *params)
+static nav_limits_t obstacle_limits(const nav_params_t *params)
 {
     const nav_limits_t limits = {(params->belly_height_m - params->clearance_min_m) -
                                      params->barred_margin_m,
@@ -123,7 +123,7 @@ static void find_obstacles(nav_cost_cell_t *cell,
                            const float *z_site_m,
                            double cell_m)
 {
-    const nav_limits_t limits = limits_of(params);
+    const nav_limits_t limits = obstacle_limits(params);
     const double per_row_m = (double) cell->plane_dz_dx * cell_m;
     const double per_col_m = (double) cell->plane_dz_dy * cell_m;
     cell->belly_obstacles = 0U;
@@ -149,7 +149,7 @@ static void find_obstacles(nav_cost_cell_t *cell,
 /** Is all ground of a cell so near to its plane that nothing in it is an obstacle? */
 static bool is_plain(const nav_params_t *params, const nav_relief_cell_t *relief)
 {
-    const nav_limits_t limits = limits_of(params);
+    const nav_limits_t limits = obstacle_limits(params);
     const double above_m = (double) relief->above_m;
     return (relief->is_whole != 0U) && (above_m <= limits.belly_m) && (above_m <= limits.wheel_m) &&
            ((double) relief->below_m >= -limits.wheel_m);

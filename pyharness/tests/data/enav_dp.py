@@ -1,4 +1,4 @@
-# ksy sha256 8a4749caf4a7b775beb12159cca5973e90f57f509c715f973ec578259f6d790c
+# ksy sha256 86df7488bc78ce28d6591d63d2dfa669fe9622d5861d686328de2b6b7c7d97de
 # This is a generated file! Please edit source .ksy file and use kaitai-struct-compiler to rebuild
 # type: ignore
 
@@ -356,15 +356,18 @@ class EnavDp(KaitaiStruct):
                 self.roughness_m2 = self._io.read_f4le()
                 self.cost_s_per_m = self._io.read_f4le()
                 self.ace_cycle = self._io.read_u4le()
-                self.ace_failed_count = self._io.read_u2le()
+                self.ace_failed_headings = self._io.read_u1()
                 self.ace_reason = self._io.read_u1()
                 self.terrain_reason = self._io.read_u1()
                 self.is_known = self._io.read_u1()
                 self.is_forbidden = self._io.read_u1()
+                self.barred_headings = self._io.read_u1()
                 self.pad_0 = []
                 for i in range(2):
                     self.pad_0.append(self._io.read_u1())
 
+                self.belly_obstacles = self._io.read_u4le()
+                self.wheel_obstacles = self._io.read_u4le()
 
             def _read_be(self):
                 self.plane_z_site_m = self._io.read_f4be()
@@ -374,15 +377,18 @@ class EnavDp(KaitaiStruct):
                 self.roughness_m2 = self._io.read_f4be()
                 self.cost_s_per_m = self._io.read_f4be()
                 self.ace_cycle = self._io.read_u4be()
-                self.ace_failed_count = self._io.read_u2be()
+                self.ace_failed_headings = self._io.read_u1()
                 self.ace_reason = self._io.read_u1()
                 self.terrain_reason = self._io.read_u1()
                 self.is_known = self._io.read_u1()
                 self.is_forbidden = self._io.read_u1()
+                self.barred_headings = self._io.read_u1()
                 self.pad_0 = []
                 for i in range(2):
                     self.pad_0.append(self._io.read_u1())
 
+                self.belly_obstacles = self._io.read_u4be()
+                self.wheel_obstacles = self._io.read_u4be()
 
 
             def _fetch_instances(self):
@@ -740,14 +746,14 @@ class EnavDp(KaitaiStruct):
             def _read_le(self):
                 self.time_s = self._io.read_f8le()
                 self.params = []
-                for i in range(56):
+                for i in range(58):
                     self.params.append(self._io.read_f8le())
 
 
             def _read_be(self):
                 self.time_s = self._io.read_f8be()
                 self.params = []
-                for i in range(56):
+                for i in range(58):
                     self.params.append(self._io.read_f8be())
 
 
@@ -1292,6 +1298,10 @@ class EnavDp(KaitaiStruct):
                 for i in range(1695):
                     self.path_cost_s.append(self._io.read_f8le())
 
+                self.first_cost_s = []
+                for i in range(154):
+                    self.first_cost_s.append(self._io.read_f8le())
+
                 self.kept = EnavDp.Body.NavPathT(self._io, self, self._root, self._is_le)
                 self.turn_bounds = []
                 for i in range(14):
@@ -1331,6 +1341,10 @@ class EnavDp(KaitaiStruct):
                 for i in range(1695):
                     self.path_cost_s.append(self._io.read_f8be())
 
+                self.first_cost_s = []
+                for i in range(154):
+                    self.first_cost_s.append(self._io.read_f8be())
+
                 self.kept = EnavDp.Body.NavPathT(self._io, self, self._root, self._is_le)
                 self.turn_bounds = []
                 for i in range(14):
@@ -1369,6 +1383,9 @@ class EnavDp(KaitaiStruct):
             def _fetch_instances(self):
                 pass
                 for i in range(len(self.path_cost_s)):
+                    pass
+
+                for i in range(len(self.first_cost_s)):
                     pass
 
                 self.kept._fetch_instances()
