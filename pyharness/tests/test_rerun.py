@@ -40,7 +40,7 @@ class Refusing(Enav):
 DRIVES = {
     "unguarded": ({"mode": "unguarded"}, "goal_reached"),
     "guarded": ({"mode": "guarded", "terrain": ground()}, "goal_reached"),
-    "guarded at a rock": ({"mode": "guarded"}, "no_path"),
+    "guarded at a rock": ({"mode": "guarded", "terrain": ground(cfa=0.15)}, "no_path"),
     "avoid_koz": ({"mode": "avoid_koz"}, "goal_reached"),
     "avoid_all": ({"mode": "avoid_all"}, "goal_reached"),
     "rocks": ({"terrain": ground(cfa=0.10)}, "goal_reached"),
@@ -65,7 +65,14 @@ DRIVES = {
         {"planner": "rrtsharp", "seed": 3, "planner_params": {"vertices": 200.0}},
         "goal_reached",
     ),
-    "no_path": ({"terrain": ground(cfa=0.3), "executive.replans_max": 0}, "no_path"),
+    "no_path": (
+        {
+            "terrain": ground(slope_deg=10.0),
+            "navlib": {"tilt_max_rad": 0.1},
+            "executive.replans_max": 0,
+        },
+        "no_path",
+    ),
     "zone in the way": ({"zones": [circle(-3.0, 1.0)], "mode": "unguarded"}, "no_path"),
     "kioz_violation": ({"zones": [circle(-10.0, 1.0)]}, "kioz_violation"),
     "time_limit": ({"executive.time_limit_s": 150.0}, "time_limit"),
