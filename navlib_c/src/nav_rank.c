@@ -58,9 +58,9 @@ static nav_reason_t leaf_reason(const nav_request_t *request, const nav_branch_t
     return reason;
 }
 
-double nav_rank_steering_s(const nav_request_t *request,
-                           const nav_steering_t *from,
-                           const nav_arc_t *arc)
+static double steering_s(const nav_request_t *request,
+                         const nav_steering_t *from,
+                         const nav_arc_t *arc)
 {
     const nav_steering_t to = nav_arc_steering(arc);
     return nav_arc_steering_duration_s(request->params, from, &to);
@@ -83,6 +83,14 @@ nav_reason_t nav_rank_path(const nav_request_t *request,
     }
     *cost_s = (reason == NAV_REASON_NONE) ? (before_s + leaf->cost_s + to_go_s) : NAV_COST_INFINITE;
     return reason;
+}
+
+double nav_rank_arc(const nav_request_t *request, const nav_arc_t *arc)
+{
+    const nav_branch_t leaf = nav_walk_follow_arc(request, &request->start, arc);
+    double cost_s = NAV_COST_INFINITE;
+    (void) nav_rank_path(request, steering_s(request, &request->in->steering, arc), &leaf, &cost_s);
+    return cost_s;
 }
 
 static void path_rank(const nav_request_t *request,
@@ -115,7 +123,7 @@ static void rank_seconds(const nav_request_t *request,
         {
             const nav_walk_t walk = nav_walk_tree(request, &first->end, k);
             leaf = nav_walk_follow(request, &walk);
-            cost_s += nav_rank_steering_s(request, &steering, &next);
+            cost_s += steering_s(request, &steering, &next);
         }
         path_rank(request, tree, path, cost_s, &leaf);
     }
@@ -141,20 +149,17 @@ static bool rank_kept(const nav_request_t *request, nav_tree_t *tree)
         double cost_s = 0.0;
         if (is_turn)
         {
-            cost_s = nav_rank_steering_s(request, &request->in->steering, &kept->turn) +
+            cost_s = steering_s(request, &request->in->steering, &kept->turn) +
                      nav_arc_duration_s(request->params, &kept->turn);
         }
-        cost_s += nav_rank_steering_s(request, is_turn ? &in_place : &request->in->steering,
-                                      &kept->first);
-        const nav_walk_t along = nav_walk_arc(request, &turned, &kept->first);
-        const nav_branch_t first = nav_walk_follow(request, &along);
+        cost_s += steering_s(request, is_turn ? &in_place : &request->in->steering, &kept->first);
+        const nav_branch_t first = nav_walk_follow_arc(request, &turned, &kept->first);
         nav_branch_t leaf = first;
         if ((first.reason == NAV_REASON_NONE) && !first.is_at_goal &&
             (kept->second.length_m > NAV_WALK_EMPTY))
         {
-            const nav_walk_t onward = nav_walk_arc(request, &first.end, &kept->second);
-            leaf = nav_walk_follow(request, &onward);
-            cost_s += first.cost_s + nav_rank_steering_s(request, &along_first, &kept->second);
+            leaf = nav_walk_follow_arc(request, &first.end, &kept->second);
+            cost_s += first.cost_s + steering_s(request, &along_first, &kept->second);
         }
         path_rank(request, tree, NAV_RANK_KEPT, cost_s, &leaf);
     }
@@ -172,7 +177,7 @@ static void rank_tree(const nav_request_t *request, nav_tree_t *tree)
         double turn_s = 0.0;
         if (turn > 0U)
         {
-            turn_s = nav_rank_steering_s(request, &request->in->steering, &turning) +
+            turn_s = steering_s(request, &request->in->steering, &turning) +
                      nav_arc_duration_s(request->params, &turning);
         }
         for (uint32_t k = 0U; k < ARCS; k++)
@@ -181,7 +186,7 @@ static void rank_tree(const nav_request_t *request, nav_tree_t *tree)
             const nav_walk_t walk = nav_walk_tree(request, &turned, k);
             const nav_branch_t first = nav_walk_follow(request, &walk);
             const nav_steering_t *steering = (turn > 0U) ? &in_place : &request->in->steering;
-            const double before_s = turn_s + nav_rank_steering_s(request, steering, &arc);
+            const double before_s = turn_s + steering_s(request, steering, &arc);
             const uint32_t node = (turn * ARCS) + k;
             rank_seconds(request, tree, node, &first, before_s);
             (void) nav_rank_path(request, before_s, &first, &tree->first_cost_s[node]);

@@ -14,16 +14,14 @@
 /** Cost-to-go from the end of a path, and whether it leads away. */
 nav_reason_t nav_rank_to_go(const nav_request_t *request, const nav_branch_t *leaf, double *cost_s);
 
-/** Duration of steering for an arc. */
-double nav_rank_steering_s(const nav_request_t *request,
-                           const nav_steering_t *from,
-                           const nav_arc_t *arc);
-
 /** Cost of a path whose last arc is the leaf, or the reason of an infinite one. */
 nav_reason_t nav_rank_path(const nav_request_t *request,
                            double before_s,
                            const nav_branch_t *leaf,
                            double *cost_s);
+
+/** Cost of an arc from the start alone; NAV_COST_INFINITE with a reason. */
+double nav_rank_arc(const nav_request_t *request, const nav_arc_t *arc);
 
 /**
  * Costs of all candidates and first arcs, and the order in which to test the candidates.

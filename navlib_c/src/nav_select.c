@@ -20,14 +20,14 @@ typedef struct
 } selection_t;
 
 /** Why the candidates after one that was tested are not: because one passed, or the budget is used up. */
-static nav_reason_t reason_of_rest(const selection_t *search, nav_reason_t tested)
+static nav_reason_t reason_of_rest(const selection_t *selection, nav_reason_t tested)
 {
     nav_reason_t rest = NAV_REASON_NONE;
-    if ((tested == NAV_REASON_NONE) || search->trial.request->is_one_path)
+    if ((tested == NAV_REASON_NONE) || selection->trial.request->is_one_path)
     {
         rest = NAV_REASON_COST;
     }
-    else if (search->trial.ace_evaluations >= search->budget_end)
+    else if (selection->trial.ace_evaluations >= selection->budget_end)
     {
         rest = NAV_REASON_BUDGET;
     }
@@ -38,14 +38,33 @@ static nav_reason_t reason_of_rest(const selection_t *search, nav_reason_t teste
     return rest;
 }
 
+/** Tests what of a candidate has not been tested before; bounds are its worst when it passes. */
+static nav_reason_t test_candidate(nav_trial_t *trial, uint32_t path, nav_ace_bounds_t *bounds)
+{
+    nav_reason_t reason = NAV_REASON_NONE;
+    if (path == NAV_RANK_KEPT)
+    {
+        reason = nav_trial_kept(trial, bounds);
+    }
+    else
+    {
+        reason = nav_trial_first(trial, path / (uint32_t) NAV_TREE_ARCS);
+        if (reason == NAV_REASON_NONE)
+        {
+            reason = nav_trial_second(trial, path, bounds);
+        }
+    }
+    return reason;
+}
+
 /** Tests the tree's paths from the cheapest, then, if none passed, the rest of the path selected
  * before. Paths not reached are rejected by cost or by the budget. */
-static void test_candidates(selection_t *search, nav_select_arc_out_t *out)
+static void test_candidates(selection_t *selection, nav_select_arc_out_t *out)
 {
-    nav_tree_t *tree = search->trial.tree;
+    nav_tree_t *tree = selection->trial.tree;
     nav_reason_t rest = NAV_REASON_NONE;
 
-    for (uint32_t k = 0U; k < search->candidate_count; k++)
+    for (uint32_t k = 0U; k < selection->candidate_count; k++)
     {
         const uint32_t path = tree->order[k];
         nav_reason_t reason = (nav_reason_t) tree->path_reason[path];
@@ -55,11 +74,9 @@ static void test_candidates(selection_t *search, nav_select_arc_out_t *out)
             if ((rest == NAV_REASON_NONE) ||
                 ((rest == NAV_REASON_BUDGET) && (path == NAV_RANK_KEPT)))
             {
-                reason = (path == NAV_RANK_KEPT)
-                             ? nav_trial_kept(&search->trial, &out->bounds)
-                             : nav_trial_path(&search->trial, path, &out->bounds);
+                reason = test_candidate(&selection->trial, path, &out->bounds);
                 out->paths_tested++;
-                rest = reason_of_rest(search, reason);
+                rest = reason_of_rest(selection, reason);
                 if (reason == NAV_REASON_NONE)
                 {
                     out->path_index = path;
@@ -117,21 +134,16 @@ static void take_short(nav_trial_t *trial, nav_select_arc_out_t *out)
 /** Takes the cheapest arc backwards that passes, if one does. */
 static void take_back(nav_trial_t *trial, nav_select_arc_out_t *out)
 {
-    const nav_request_t *request = trial->request;
     double least_s = NAV_COST_INFINITE;
     for (uint32_t k = 0U; k < (uint32_t) NAV_TREE_ARCS; k++)
     {
-        const nav_arc_t arc = nav_walk_back_arc(request, k);
-        const nav_walk_t walk = nav_walk_arc(request, &request->start, &arc);
-        const nav_branch_t leaf = nav_walk_follow(request, &walk);
-        const double steering_s = nav_rank_steering_s(request, &request->in->steering, &arc);
-        double cost_s = NAV_COST_INFINITE;
-        (void) nav_rank_path(request, steering_s, &leaf, &cost_s);
+        const nav_arc_t arc = nav_walk_back_arc(trial->request, k);
+        const double cost_s = nav_rank_arc(trial->request, &arc);
         if (cost_s < least_s)
         {
             nav_ace_bounds_t bounds;
             nav_trial_best(&bounds);
-            if (nav_trial_walk(trial, &walk, 0.0, &bounds) == NAV_REASON_NONE)
+            if (nav_trial_arc(trial, &arc, &bounds) == NAV_REASON_NONE)
             {
                 least_s = cost_s;
                 out->path_index = (uint32_t) NAV_TREE_BACK + k;
@@ -148,27 +160,27 @@ static bool is_found(const nav_select_arc_out_t *out)
 }
 
 /** Tests all candidates, then, where the mode looks for more than one path, the last resorts. */
-static void test_all(selection_t *search, nav_select_arc_out_t *out)
+static void test_all(selection_t *selection, nav_select_arc_out_t *out)
 {
-    test_candidates(search, out);
-    if (!is_found(out) && !search->trial.request->is_one_path)
+    test_candidates(selection, out);
+    if (!is_found(out) && !selection->trial.request->is_one_path)
     {
-        take_short(&search->trial, out);
+        take_short(&selection->trial, out);
     }
-    if (!is_found(out) && !search->trial.request->is_one_path)
+    if (!is_found(out) && !selection->trial.request->is_one_path)
     {
-        take_back(&search->trial, out);
+        take_back(&selection->trial, out);
     }
 }
 
 /** Makes the paths that ACE refused untested again, for the leave limits. */
-static void begin_leaving(selection_t *search, nav_select_arc_out_t *out)
+static void begin_leaving(selection_t *selection, nav_select_arc_out_t *out)
 {
-    nav_tree_t *tree = search->trial.tree;
-    search->trial.is_leaving = true;
-    search->budget_end += search->trial.ace_evaluations;
-    nav_trial_begin(&search->trial);
-    for (uint32_t path = 0U; path < search->candidate_count; path++)
+    nav_tree_t *tree = selection->trial.tree;
+    selection->trial.is_leaving = true;
+    selection->budget_end += selection->trial.ace_evaluations;
+    nav_trial_begin(&selection->trial);
+    for (uint32_t path = 0U; path < selection->candidate_count; path++)
     {
         if (tree->path_cost_s[path] < NAV_COST_INFINITE)
         {
@@ -187,20 +199,20 @@ void nav_select_path(nav_tree_t *tree,
                      nav_select_arc_out_t *out)
 {
     const nav_request_t request = nav_walk_request(scene, in);
-    selection_t search = {.trial = {.request = &request, .tree = tree},
-                          .candidate_count = nav_rank_candidates(&request, tree),
-                          .budget_end = (uint32_t) request.params->ace_budget_poses};
+    selection_t selection = {.trial = {.request = &request, .tree = tree},
+                             .candidate_count = nav_rank_candidates(&request, tree),
+                             .budget_end = (uint32_t) request.params->ace_budget_poses};
 
     out->path_index = (uint32_t) NAV_TREE_NONE;
-    nav_trial_begin(&search.trial);
-    test_all(&search, out);
+    nav_trial_begin(&selection.trial);
+    test_all(&selection, out);
     if (!is_found(out) && request.test_terrain && !request.is_one_path)
     {
-        begin_leaving(&search, out);
-        test_all(&search, out);
+        begin_leaving(&selection, out);
+        test_all(&selection, out);
         out->is_leaving = is_found(out) ? 1U : 0U;
     }
-    out->ace_evaluations = search.trial.ace_evaluations;
+    out->ace_evaluations = selection.trial.ace_evaluations;
     if (is_found(out))
     {
         out->status = (uint32_t) NAV_OK;

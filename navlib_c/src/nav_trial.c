@@ -105,10 +105,14 @@ static nav_reason_t test_pose(nav_trial_t *trial,
     return reason;
 }
 
-nav_reason_t nav_trial_walk(nav_trial_t *trial,
-                            const nav_walk_t *walk,
-                            double distance_m,
-                            nav_ace_bounds_t *bounds)
+/**
+ * Tests an arc or turn that begins distance_m along the path, up to the waydisc or to the first pose
+ * that fails, and worsens the bounds.
+ */
+static nav_reason_t test_walk(nav_trial_t *trial,
+                              const nav_walk_t *walk,
+                              double distance_m,
+                              nav_ace_bounds_t *bounds)
 {
     const nav_request_t *request = trial->request;
     const bool is_turn = fabs(walk->arc.length_m) <= NAV_WALK_EMPTY;
@@ -127,6 +131,22 @@ nav_reason_t nav_trial_walk(nav_trial_t *trial,
     return reason;
 }
 
+/** Tests any arc or turn in place that begins distance_m along the path. */
+static nav_reason_t test_arc(nav_trial_t *trial,
+                             const nav_pose2_t *start,
+                             const nav_arc_t *arc,
+                             double distance_m,
+                             nav_ace_bounds_t *bounds)
+{
+    const nav_walk_t walk = nav_walk_arc(trial->request, start, arc);
+    return test_walk(trial, &walk, distance_m, bounds);
+}
+
+nav_reason_t nav_trial_arc(nav_trial_t *trial, const nav_arc_t *arc, nav_ace_bounds_t *bounds)
+{
+    return test_arc(trial, &trial->request->start, arc, 0.0, bounds);
+}
+
 static bool is_refused(uint8_t verdict)
 {
     return (verdict != (uint8_t) NAV_REASON_NONE) && (verdict != (uint8_t) NAV_TREE_UNTESTED);
@@ -138,22 +158,14 @@ bool nav_trial_may_pass(const nav_trial_t *trial, uint32_t node)
            !is_refused(trial->tree->first_verdict[node]);
 }
 
-/** Where the first arcs after a turn in place begin. */
-static nav_pose2_t turned_pose(const nav_request_t *request, uint32_t turn)
-{
-    const nav_arc_t turning = nav_walk_turn(turn);
-    return nav_arc_pose(&request->start, &turning, 1.0);
-}
-
 static nav_reason_t test_turn(nav_trial_t *trial, uint32_t turn)
 {
     nav_tree_t *tree = trial->tree;
     if (tree->turn_verdict[turn] == (uint8_t) NAV_TREE_UNTESTED)
     {
         const nav_arc_t turning = nav_walk_turn(turn);
-        const nav_walk_t walk = nav_walk_arc(trial->request, &trial->request->start, &turning);
         tree->turn_verdict[turn] =
-            (uint8_t) nav_trial_walk(trial, &walk, 0.0, &tree->turn_bounds[turn]);
+            (uint8_t) nav_trial_arc(trial, &turning, &tree->turn_bounds[turn]);
     }
     return (nav_reason_t) tree->turn_verdict[turn];
 }
@@ -167,35 +179,31 @@ nav_reason_t nav_trial_first(nav_trial_t *trial, uint32_t node)
     {
         if (tree->first_verdict[node] == (uint8_t) NAV_TREE_UNTESTED)
         {
-            const nav_pose2_t turned = turned_pose(trial->request, turn);
+            const nav_arc_t turning = nav_walk_turn(turn);
+            const nav_pose2_t turned = nav_arc_pose(&trial->request->start, &turning, 1.0);
             const nav_walk_t walk = nav_walk_tree(trial->request, &turned, node % ARCS);
             tree->first_bounds[node] = tree->turn_bounds[turn];
             tree->first_verdict[node] =
-                (uint8_t) nav_trial_walk(trial, &walk, 0.0, &tree->first_bounds[node]);
+                (uint8_t) test_walk(trial, &walk, 0.0, &tree->first_bounds[node]);
         }
         reason = (nav_reason_t) tree->first_verdict[node];
     }
     return reason;
 }
 
-nav_reason_t nav_trial_path(nav_trial_t *trial, uint32_t path, nav_ace_bounds_t *bounds)
+nav_reason_t nav_trial_second(nav_trial_t *trial, uint32_t path, nav_ace_bounds_t *bounds)
 {
     const nav_request_t *request = trial->request;
     const uint32_t node = path / ARCS;
-    nav_reason_t reason = nav_trial_first(trial, node);
-    if (reason == NAV_REASON_NONE)
+    const nav_branch_t first = nav_walk_follow_first(request, node);
+    nav_reason_t reason = NAV_REASON_NONE;
+    *bounds = trial->tree->first_bounds[node];
+    if (!first.is_at_goal)
     {
-        const nav_pose2_t turned = turned_pose(request, node / ARCS);
-        nav_walk_t walk = nav_walk_tree(request, &turned, node % ARCS);
-        const nav_branch_t first = nav_walk_follow(request, &walk);
-        *bounds = trial->tree->first_bounds[node];
-        if (!first.is_at_goal)
-        {
-            walk = nav_walk_tree(request, &first.end, path % ARCS);
-            reason = nav_trial_walk(trial, &walk, request->params->tree_arc_length_m, bounds);
-        }
-        trial->tree->second_verdict[path] = (uint8_t) reason;
+        const nav_walk_t walk = nav_walk_tree(request, &first.end, path % ARCS);
+        reason = test_walk(trial, &walk, request->params->tree_arc_length_m, bounds);
     }
+    trial->tree->second_verdict[path] = (uint8_t) reason;
     return reason;
 }
 
@@ -204,19 +212,16 @@ nav_reason_t nav_trial_kept(nav_trial_t *trial, nav_ace_bounds_t *bounds)
     const nav_request_t *request = trial->request;
     const nav_path_t *kept = &trial->tree->kept;
     const nav_pose2_t turned = nav_arc_pose(&request->start, &kept->turn, 1.0);
-    nav_walk_t walk = nav_walk_arc(request, &request->start, &kept->turn);
+    const nav_branch_t first = nav_walk_follow_arc(request, &turned, &kept->first);
     nav_trial_best(bounds);
-    nav_reason_t reason = nav_trial_walk(trial, &walk, 0.0, bounds);
-    walk = nav_walk_arc(request, &turned, &kept->first);
-    const nav_branch_t first = nav_walk_follow(request, &walk);
+    nav_reason_t reason = nav_trial_arc(trial, &kept->turn, bounds);
     if (reason == NAV_REASON_NONE)
     {
-        reason = nav_trial_walk(trial, &walk, 0.0, bounds);
+        reason = test_arc(trial, &turned, &kept->first, 0.0, bounds);
     }
     if ((reason == NAV_REASON_NONE) && !first.is_at_goal)
     {
-        walk = nav_walk_arc(request, &first.end, &kept->second);
-        reason = nav_trial_walk(trial, &walk, kept->first.length_m, bounds);
+        reason = test_arc(trial, &first.end, &kept->second, kept->first.length_m, bounds);
     }
     return reason;
 }

@@ -23,14 +23,8 @@ void nav_trial_begin(nav_trial_t *trial);
 /** Bounds that anything else is worse than. */
 void nav_trial_best(nav_ace_bounds_t *bounds);
 
-/**
- * Tests an arc or turn that begins distance_m along the path, up to the waydisc or to the first pose
- * that fails, and worsens the bounds.
- */
-nav_reason_t nav_trial_walk(nav_trial_t *trial,
-                            const nav_walk_t *walk,
-                            double distance_m,
-                            nav_ace_bounds_t *bounds);
+/** Tests an arc from the start of the request, or a turn in place, and worsens the bounds. */
+nav_reason_t nav_trial_arc(nav_trial_t *trial, const nav_arc_t *arc, nav_ace_bounds_t *bounds);
 
 /** May a turn and a first arc of the tree still pass, for all that has been tested? */
 bool nav_trial_may_pass(const nav_trial_t *trial, uint32_t node);
@@ -38,9 +32,11 @@ bool nav_trial_may_pass(const nav_trial_t *trial, uint32_t node);
 /** Tests what of a turn and a first arc has not been tested before; their bounds are in the tree. */
 nav_reason_t nav_trial_first(nav_trial_t *trial, uint32_t node);
 
-/** Tests what of a path of the tree has not been tested before; bounds are the worst of the whole path
- * when it passes. */
-nav_reason_t nav_trial_path(nav_trial_t *trial, uint32_t path, nav_ace_bounds_t *bounds);
+/**
+ * Tests the second arc of a path of the tree whose turn and first arc have passed. The bounds are the
+ * worst of the whole path.
+ */
+nav_reason_t nav_trial_second(nav_trial_t *trial, uint32_t path, nav_ace_bounds_t *bounds);
 
 /** Tests the rest of the path selected before. */
 nav_reason_t nav_trial_kept(nav_trial_t *trial, nav_ace_bounds_t *bounds);

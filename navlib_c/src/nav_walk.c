@@ -163,3 +163,19 @@ nav_branch_t nav_walk_follow(const nav_request_t *request, const nav_walk_t *wal
     }
     return branch;
 }
+
+nav_branch_t nav_walk_follow_arc(const nav_request_t *request,
+                                 const nav_pose2_t *start,
+                                 const nav_arc_t *arc)
+{
+    const nav_walk_t walk = nav_walk_arc(request, start, arc);
+    return nav_walk_follow(request, &walk);
+}
+
+nav_branch_t nav_walk_follow_first(const nav_request_t *request, uint32_t node)
+{
+    const nav_arc_t turning = nav_walk_turn(node / (uint32_t) NAV_TREE_ARCS);
+    const nav_pose2_t turned = nav_arc_pose(&request->start, &turning, 1.0);
+    const nav_walk_t walk = nav_walk_tree(request, &turned, node % (uint32_t) NAV_TREE_ARCS);
+    return nav_walk_follow(request, &walk);
+}

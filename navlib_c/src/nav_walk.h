@@ -76,4 +76,12 @@ double nav_walk_goal_distance_m(const nav_request_t *request, const nav_pose2_t 
 /** Follows an arc: time, terrain, end at the waydisc. An empty arc costs nothing. */
 nav_branch_t nav_walk_follow(const nav_request_t *request, const nav_walk_t *walk);
 
+/** Follows any arc. */
+nav_branch_t nav_walk_follow_arc(const nav_request_t *request,
+                                 const nav_pose2_t *start,
+                                 const nav_arc_t *arc);
+
+/** Follows a turn in place and a first arc of the tree; the turn costs nothing here. */
+nav_branch_t nav_walk_follow_first(const nav_request_t *request, uint32_t node);
+
 #endif

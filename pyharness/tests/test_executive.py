@@ -181,7 +181,9 @@ def test_without_a_path_it_looks_around_and_goes_on(make_drive):
     assert drive.run().is_reached
     assert len(drive.world.looks) == 2
     imaging = [item for item in drive.timeline(Activity.IMAGING) if item[0] in drive.world.looks]
-    assert imaging[0][1] - imaging[0][0] == 5 * drive.config.compute.imaging_s
+    assert imaging[0][1] - imaging[0][0] == (
+        len(drive.config.look_around_deg) * drive.config.compute.imaging_s
+    )
 
 
 def test_no_path_again_and_again_is_a_fault_with_the_reasons(make_drive):
