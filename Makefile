@@ -9,6 +9,8 @@ JOBS ?= 2
 # of every source of Navlib, by its C tests alone
 LEAST_LINE_PERCENT ?= 100
 LEAST_BRANCH_PERCENT ?= 98
+# of any call of Navlib
+MOST_STACK_BYTES ?= 4096
 # of the bulk check of ACE
 POSES ?= 1000000
 SEARCH_S ?= 300
@@ -70,7 +72,7 @@ drive: $(SETUP) ## set up and run the demonstration drive
 	@$(BIN)/enav drive --force
 
 .PHONY: test
-test: test-c style misra test-python ## set up and run all tests: C under sanitizers, MISRA, style, Python
+test: test-c style misra stack test-python ## set up and run all tests: C under sanitizers, MISRA, style, stack, Python
 
 .PHONY: test-c
 test-c: $(SETUP) ## the C tests under the address and undefined-behaviour sanitizers
@@ -90,12 +92,16 @@ style: $(SETUP) ## formatting, ruff and the import rules, in seconds
 	@echo "style: ruff, clang-format, import contracts, shape of C ok"
 
 .PHONY: lint
-lint: style misra ## style, MISRA rules and types
+lint: style misra stack ## style, MISRA rules, stack and types
 	@mypy
 
 .PHONY: misra
 misra: $(SETUP) ## cppcheck with its MISRA addon over Navlib
 	@JOBS=$(JOBS) .ci/misra
+
+.PHONY: stack
+stack: $(SETUP) ## worst-case stack of every call of Navlib
+	@$(BIN)/python .ci/stack.py --most-bytes $(MOST_STACK_BYTES)
 
 .PHONY: bench
 bench: $(SETUP)-bench ## set up and measure speed: a table, and build/bench.json
