@@ -245,7 +245,7 @@ def bench_analyze_terrain(bench: Bench) -> Iterator[Result]:
                 navlib.process_disparity(request)
             duration_s = _analysis_s(navlib, pose)
             typical_s = min(typical_s, duration_s) if index > 0 else typical_s
-        for state in ("surface_state", "costmap_state"):
+        for state in ("surface_state", "costmap_state", "relief"):
             ffi.memmove(ffi.addressof(navlib.context, state), *_zeros(navlib.context, state))
         full_s = min(full_s, _analysis_s(navlib, drive_images[-1][0]))
     nothing_s = min(_analysis_s(navlib, drive_images[-1][0]) for _ in range(REPEATS))

@@ -114,4 +114,11 @@ void nav_heightmap_surface(nav_heightmap_t *map,
                            nav_surface_state_t *state,
                            nav_surface_t *surface);
 
+/**
+ * Moves heights that lie over a surface, width in a row, to where they lie over one whose corner is that
+ * many cells further north and east. Cells that come hold anything.
+ * @return false, and nothing moved, when none stays
+ */
+bool nav_heightmap_follow(float *z_m, int32_t width, int64_t rows, int64_t cols);
+
 #endif

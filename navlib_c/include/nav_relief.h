@@ -27,6 +27,9 @@ typedef struct
      * over one of four neighbours or between them, of their four numbers the least;
      * -NAV_SURFACE_UNKNOWN_M where not all ground nearby is known */
     float rest_z_site_m[NAV_HEIGHTMAP_CELLS];
+    uint32_t surface_count; /* of the last surface that balls rested on; 0: none */
+    int32_t origin_row;     /* its */
+    int32_t origin_col;
 } nav_relief_t;
 
 /**
@@ -38,7 +41,14 @@ void nav_relief_update(nav_relief_t *relief,
                        const nav_costmap_state_t *state,
                        const nav_surface_t *surface);
 
-/** Lets balls of the wheels' radius rest on all of the surface. */
-void nav_relief_rest(nav_relief_t *relief, const nav_surface_t *surface, double radius_m);
+/**
+ * Lets balls of the wheels' radius rest on the surface: anew only near blocks that changed since the last
+ * one; the outcome is that of doing so on all of it. An empty relief makes it do so. The radius is that
+ * of the call before.
+ */
+void nav_relief_rest(nav_relief_t *relief,
+                     const nav_surface_t *surface,
+                     const nav_surface_state_t *changes,
+                     double radius_m);
 
 #endif

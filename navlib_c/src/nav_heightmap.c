@@ -428,15 +428,34 @@ static void fill(const float *raw_m,
     }
 }
 
-static void shift(float *z_m, int32_t count, int32_t offset)
+static void move(float *to_m, const float *from_m, int32_t count)
 {
+    (void) memmove(to_m, from_m, sizeof(to_m[0]) * (size_t) count);
+}
+
+/* A row at a time, in the order that overwrites nothing before its use. */
+static void shift(float *z_m, int32_t width, int32_t offset)
+{
+    const int32_t count = width * width;
+
     if (offset > 0)
     {
-        (void) memmove(z_m, &z_m[offset], sizeof(z_m[0]) * (size_t) (count - offset));
+        for (int32_t at = 0; at < (count - offset); at += width)
+        {
+            const int32_t left = (count - offset) - at;
+
+            move(&z_m[at], &z_m[at + offset], (left < width) ? left : width);
+        }
     }
     else
     {
-        (void) memmove(&z_m[-offset], z_m, sizeof(z_m[0]) * (size_t) (count + offset));
+        for (int32_t end = count; end > -offset; end -= width)
+        {
+            const int32_t left = end + offset;
+            const int32_t first = end - ((left < width) ? left : width);
+
+            move(&z_m[first], &z_m[first + offset], end - first);
+        }
     }
 }
 
@@ -445,15 +464,9 @@ static bool follow(const nav_heightmap_t *map, nav_surface_state_t *state, nav_s
 {
     const int64_t rows = (int64_t) map->origin_row - (int64_t) surface->origin_row;
     const int64_t cols = (int64_t) map->origin_col - (int64_t) surface->origin_col;
-    const int64_t size = (int64_t) NAV_SIZE;
-    const bool is_near = (rows > -size) && (rows < size) && (cols > -size) && (cols < size);
 
-    if (is_near && ((rows != 0) || (cols != 0)))
-    {
-        shift(state->z_m, NAV_RAW * NAV_RAW, (int32_t) ((rows * (int64_t) NAV_RAW) + cols));
-        shift(surface->z_site_m, NAV_SIZE * NAV_SIZE, (int32_t) ((rows * size) + cols));
-    }
-    return is_near;
+    (void) nav_heightmap_follow(state->z_m, NAV_RAW, rows, cols);
+    return nav_heightmap_follow(surface->z_site_m, NAV_SIZE, rows, cols);
 }
 
 static void clear_border(float *raw_m)
@@ -659,4 +672,16 @@ void nav_heightmap_surface(nav_heightmap_t *map,
     stamp(map->is_changed, state);
     fill_stamped(map, state, params->surface_fill_neighbors, surface->z_site_m);
     (void) memset(map->is_changed, 0, sizeof(map->is_changed));
+}
+
+bool nav_heightmap_follow(float *z_m, int32_t width, int64_t rows, int64_t cols)
+{
+    const int64_t size = (int64_t) NAV_SIZE;
+    const bool is_near = (rows > -size) && (rows < size) && (cols > -size) && (cols < size);
+
+    if (is_near && ((rows != 0) || (cols != 0)))
+    {
+        shift(z_m, width, (int32_t) ((rows * (int64_t) width) + cols));
+    }
+    return is_near;
 }

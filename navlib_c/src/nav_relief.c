@@ -5,16 +5,31 @@
  */
 #include "nav_relief.h"
 
+#include <string.h>
+
 #include "nav_guard.h"
+#include "nav_math.h"
 
 #define SIDE ((int32_t) NAV_CELLS_PER_COST_CELL)
 #define MIDDLE (0.5 * ((double) NAV_CELLS_PER_COST_CELL - 1.0))
 #define NOTHING_M 1.0e9
 
+#define BLOCKS ((int32_t) NAV_BLOCKS_SIDE)
+
 /* Cells that a ball reaches on either side of its middle: of the largest wheel on the finest grid. */
 #define REACH_MAX 12
-#define TAPS_MAX ((2 * REACH_MAX) + 1)
+#define BLANK ((uint32_t) (SIDE * SIDE))     /* gaps in a block without a height */
 #define UNKNOWN_Z_M (-NAV_SURFACE_UNKNOWN_M) /* ground that could be as high as anything */
+
+/* Columns done in one go. The loops over a batch have this fixed length and no branches, so that
+ * compilers turn them into instructions for several numbers at once. */
+#define BATCH 20
+
+_Static_assert(NAV_BLOCKS_SIDE <= 64, "sets of blocks in a row have a bit for each");
+_Static_assert(
+    (NAV_CELLS_PER_COST_CELL >= 3) && (NAV_CELLS_PER_COST_CELL <= 5),
+    "closed gaps do not reach the middle of a block, balls from all of it do: at least 2 cells");
+_Static_assert(NAV_HEIGHTMAP_SIZE >= ((2 * REACH_MAX) + BATCH), "a batch fits between the edges");
 
 /** Relief of a costmap cell whose first heightmap cell is the given one on the surface. */
 static nav_relief_cell_t relief_of(const nav_cost_cell_t *cell,
@@ -85,13 +100,37 @@ void nav_relief_update(nav_relief_t *relief,
     }
 }
 
-/** A ball over the grid: how much lower its lowest point hangs than ground that many cells away, along
- * one axis. */
+/** A ball over the grid: how much lower its lowest point hangs than ground that many cells away on
+ * either side, along one axis. */
 typedef struct
 {
     int32_t reach; /* cells on either side */
-    float fall_m[TAPS_MAX];
+    float fall_m[REACH_MAX + 1];
 } ball_t;
+
+/** Blocks along one axis. */
+typedef struct
+{
+    int32_t in_block; /* place of the surface's first cell in its block */
+    int32_t first;    /* where that block stands in tables */
+    int32_t count;    /* of those that the surface touches */
+} blocks_t;
+
+/** A row of blocks: bit k of a set is the one k blocks east of the first. */
+typedef struct
+{
+    uint64_t changed; /* since the last surface that balls rested on */
+    uint64_t blank;   /* whole blocks without a height: gaps closed, their middle is unknown */
+} row_t;
+
+/** Cells of the surface, from a row and a column to before another. */
+typedef struct
+{
+    int32_t row;
+    int32_t row_end;
+    int32_t col;
+    int32_t col_end;
+} part_t;
 
 /**
  * The ball is taken as the paraboloid around it: its two axes add up. All ground it can touch hangs on
@@ -104,70 +143,280 @@ static ball_t ball_of(double radius_m, double cell_m)
     ball_t ball = {0, {0.0F}};
     ball.reach = (int32_t) ((radius_m / cell_m) + 2.0);
     ball.reach = NAV_ALWAYS(ball.reach <= REACH_MAX) ? ball.reach : REACH_MAX;
-    for (int32_t tap = 0; tap <= (2 * ball.reach); tap++)
+    for (int32_t away = 0; away <= ball.reach; away++)
     {
-        const double away_m = (double) (tap - ball.reach) * cell_m;
-        ball.fall_m[tap] =
+        const double away_m = (double) away * cell_m;
+        ball.fall_m[away] =
             (float) (((away_m * away_m) - (0.5 * cell_m * cell_m)) / (2.0 * radius_m));
     }
     return ball;
 }
 
-/** Where balls rest on the ground of one column of cells alone, in every column around a row. */
+static float lesser(float a, float b)
+{
+    return (a < b) ? a : b;
+}
+
+static float greater(float a, float b)
+{
+    return (a > b) ? a : b;
+}
+
+static int32_t within(int32_t low, int32_t index, int32_t high)
+{
+    const int32_t raised = (index > low) ? index : low;
+    return (raised < high) ? raised : high;
+}
+
+/** Where balls rest on the ground of their own column of cells alone, given their row and the columns
+ * of a batch. */
 static void rest_along_columns(const ball_t *ball,
-                               const nav_surface_t *surface,
+                               const float *z_site_m,
                                int32_t middle_row,
-                               float z_m[NAV_HEIGHTMAP_SIZE])
+                               float along_m[BATCH])
 {
-    for (int32_t col = 0; col < NAV_HEIGHTMAP_SIZE; col++)
+    const float *middle_m = &z_site_m[middle_row * NAV_HEIGHTMAP_SIZE];
+    float rest_m[BATCH];
+    float lowest_m[BATCH];
+
+    for (int32_t k = 0; k < BATCH; k++)
     {
-        z_m[col] = NAV_SURFACE_UNKNOWN_M;
+        rest_m[k] = middle_m[k] + ball->fall_m[0];
+        lowest_m[k] = middle_m[k];
     }
-    for (int32_t tap = 0; tap <= (2 * ball->reach); tap++)
+    for (int32_t away = 1; away <= ball->reach; away++)
     {
-        const int32_t row = middle_row + (tap - ball->reach);
-        const float *ground_m = &surface->z_site_m[row * NAV_HEIGHTMAP_SIZE];
-        const float fall_m = ball->fall_m[tap];
-        for (int32_t col = 0; col < NAV_HEIGHTMAP_SIZE; col++)
+        const float *south_m = &z_site_m[(middle_row - away) * NAV_HEIGHTMAP_SIZE];
+        const float *north_m = &z_site_m[(middle_row + away) * NAV_HEIGHTMAP_SIZE];
+        const float fall_m = ball->fall_m[away];
+        for (int32_t k = 0; k < BATCH; k++)
         {
-            const float known_m =
-                (ground_m[col] < NAV_SURFACE_UNKNOWN_M) ? ground_m[col] : UNKNOWN_Z_M;
-            const float rest_m = known_m + fall_m;
-            z_m[col] = (rest_m < z_m[col]) ? rest_m : z_m[col];
+            rest_m[k] = lesser(lesser(south_m[k], north_m[k]) + fall_m, rest_m[k]);
+            lowest_m[k] = greater(greater(south_m[k], north_m[k]), lowest_m[k]);
         }
+    }
+    for (int32_t k = 0; k < BATCH; k++)
+    {
+        along_m[k] = (lowest_m[k] < NAV_SURFACE_UNKNOWN_M) ? rest_m[k] : UNKNOWN_Z_M;
     }
 }
 
-/** Where balls rest on all ground: highest over the columns around. */
-static void rest_across(const ball_t *ball,
-                        const float along_m[NAV_HEIGHTMAP_SIZE],
-                        float rest_z_site_m[NAV_HEIGHTMAP_SIZE])
+/** Where balls rest on all ground, given where they do on that of the columns: highest over those
+ * around. From the first column around the first of the batch. */
+static void rest_across(const ball_t *ball, const float *along_m, float rest_z_site_m[BATCH])
 {
-    for (int32_t tap = 0; tap <= (2 * ball->reach); tap++)
+    float rest_m[BATCH];
+
+    for (int32_t k = 0; k < BATCH; k++)
     {
-        const float fall_m = ball->fall_m[tap];
-        const float *from_m = &along_m[tap];
-        float *to_m = &rest_z_site_m[ball->reach];
-        for (int32_t col = 0; col < (NAV_HEIGHTMAP_SIZE - (2 * ball->reach)); col++)
+        rest_m[k] = along_m[ball->reach + k] + ball->fall_m[0];
+    }
+    for (int32_t away = 1; away <= ball->reach; away++)
+    {
+        const float *west_m = &along_m[ball->reach - away];
+        const float *east_m = &along_m[ball->reach + away];
+        const float fall_m = ball->fall_m[away];
+        for (int32_t k = 0; k < BATCH; k++)
         {
-            const float rest_m = from_m[col] + fall_m;
-            to_m[col] = ((tap == 0) || (rest_m < to_m[col])) ? rest_m : to_m[col];
+            rest_m[k] = lesser(lesser(west_m[k], east_m[k]) + fall_m, rest_m[k]);
         }
+    }
+    for (int32_t k = 0; k < BATCH; k++)
+    {
+        rest_z_site_m[k] = rest_m[k];
     }
 }
 
-void nav_relief_rest(nav_relief_t *relief, const nav_surface_t *surface, double radius_m)
+/** Lets balls rest on columns of a row, a batch of them at least; none reaches an edge. */
+static void rest_in_row(const ball_t *ball,
+                        const nav_surface_t *surface,
+                        int32_t row,
+                        int32_t col,
+                        int32_t col_end,
+                        float *rest_z_site_m)
 {
-    const ball_t ball = ball_of(radius_m, surface->cell_m);
+    const int32_t first = col - ball->reach;
+    const int32_t width = (col_end - col) + (2 * ball->reach);
     float along_m[NAV_HEIGHTMAP_SIZE];
 
-    for (int32_t cell = 0; cell < NAV_HEIGHTMAP_CELLS; cell++)
+    /* the last batch ends where the columns do, even if it has some of the one before */
+    for (int32_t k = 0; k < width; k += BATCH)
     {
-        relief->rest_z_site_m[cell] = UNKNOWN_Z_M;
+        const int32_t at = within(0, k, width - BATCH);
+        rest_along_columns(ball, &surface->z_site_m[first + at], row, &along_m[at]);
     }
-    for (int32_t row = ball.reach; row < (NAV_HEIGHTMAP_SIZE - ball.reach); row++)
+    for (int32_t k = col; k < col_end; k += BATCH)
     {
-        rest_along_columns(&ball, surface, row, along_m);
-        rest_across(&ball, along_m, &relief->rest_z_site_m[row * NAV_HEIGHTMAP_SIZE]);
+        const int32_t at = within(col, k, col_end - BATCH);
+        rest_across(ball, &along_m[at - col], &rest_z_site_m[(row * NAV_HEIGHTMAP_SIZE) + at]);
     }
+}
+
+/** Lets balls rest on a part of the surface, where none reaches an edge. Cells of a batch beside it get
+ * what they have or will get. */
+static void rest_on_part(const ball_t *ball,
+                         const nav_surface_t *surface,
+                         const part_t *part,
+                         float *rest_z_site_m)
+{
+    const int32_t low = ball->reach;
+    const int32_t high = NAV_HEIGHTMAP_SIZE - ball->reach;
+    const int32_t col = within(low, part->col, high - BATCH);
+    const int32_t col_end = within(col + BATCH, part->col_end, high);
+    const int32_t row_end = within(low, part->row_end, high);
+
+    for (int32_t row = within(low, part->row, high); row < row_end; row++)
+    {
+        rest_in_row(ball, surface, row, col, col_end, rest_z_site_m);
+    }
+}
+
+/** As if no ground of a part were known. */
+static void forget_part(const part_t *part, float *rest_z_site_m)
+{
+    for (int32_t row = part->row; row < part->row_end; row++)
+    {
+        for (int32_t col = part->col; col < part->col_end; col++)
+        {
+            rest_z_site_m[(row * NAV_HEIGHTMAP_SIZE) + col] = UNKNOWN_Z_M;
+        }
+    }
+}
+
+static blocks_t blocks_from(int32_t origin)
+{
+    const int32_t in_block = nav_wrap_index(origin, SIDE);
+    const blocks_t blocks = {in_block, nav_wrap_index((origin - in_block) / SIDE, BLOCKS),
+                             (in_block + NAV_HEIGHTMAP_SIZE + (SIDE - 1)) / SIDE};
+    return blocks;
+}
+
+/** The first cell on the surface of a block, which is given by its place from the first one. */
+static int32_t first_cell(const blocks_t *blocks, int32_t block)
+{
+    return within(0, (block * SIDE) - blocks->in_block, NAV_HEIGHTMAP_SIZE);
+}
+
+static int32_t in_tables(const blocks_t *blocks, int32_t block)
+{
+    const int32_t place = blocks->first + block;
+    return (place < BLOCKS) ? place : (place - BLOCKS);
+}
+
+/** Takes one row of blocks from tables. */
+static row_t row_from(const nav_surface_state_t *changes,
+                      const blocks_t *cols,
+                      int32_t table_row,
+                      uint32_t seen_count)
+{
+    const int32_t first = table_row * BLOCKS;
+    row_t row = {0U, 0U};
+    for (int32_t col = 0; col < cols->count; col++)
+    {
+        const int32_t block = first + in_tables(cols, col);
+        const uint64_t is_changed = (changes->changed_at[block] > seen_count) ? 1U : 0U;
+        const uint64_t is_blank = (changes->blocks[block].gap_count == BLANK) ? 1U : 0U;
+        row.changed |= is_changed << (uint32_t) col;
+        row.blank |= is_blank << (uint32_t) col;
+    }
+    return row;
+}
+
+/** Those of a row of blocks from which balls reach a block that changed. */
+static uint64_t reached_in_row(const row_t blocks[NAV_BLOCKS_SIDE],
+                               int32_t row,
+                               int32_t row_count,
+                               int32_t reach)
+{
+    const int32_t last = within(0, row + reach, row_count - 1);
+    uint64_t reached = 0U;
+
+    for (int32_t other = within(0, row - reach, last); other <= last; other++)
+    {
+        reached |= blocks[other].changed;
+    }
+    for (int32_t step = 0; step < reach; step++)
+    {
+        reached |= (reached << 1U) | (reached >> 1U);
+    }
+    return reached;
+}
+
+/** The first block from a place on that is in a set; their number when there is none. */
+static int32_t find_block(uint64_t set, int32_t from, int32_t count)
+{
+    int32_t block = from;
+    while ((block < count) && (((set >> (uint32_t) block) & 1U) == 0U))
+    {
+        block++;
+    }
+    return block;
+}
+
+/** The next blocks side by side in a set, as cells, from a place on. @return the place after them */
+static int32_t next_part(const blocks_t *cols, uint64_t set, int32_t from, part_t *part)
+{
+    const int32_t first = find_block(set, from, cols->count);
+    const int32_t end = find_block(~set, first, cols->count);
+    part->col = first_cell(cols, first);
+    part->col_end = first_cell(cols, end);
+    return end;
+}
+
+/** As if no ground of the blocks of a set were known; in a row of them, given its rows of cells. */
+static void forget_blocks(const blocks_t *cols, uint64_t set, part_t part, float *rest_z_site_m)
+{
+    int32_t end = next_part(cols, set, 0, &part);
+    while (part.col < part.col_end)
+    {
+        forget_part(&part, rest_z_site_m);
+        end = next_part(cols, set, end, &part);
+    }
+}
+
+/** Lets balls rest on the blocks of a set in a row of them, given its rows of cells. */
+static void rest_on_blocks(const ball_t *ball,
+                           const nav_surface_t *surface,
+                           const blocks_t *cols,
+                           uint64_t set,
+                           part_t part,
+                           float *rest_z_site_m)
+{
+    int32_t end = next_part(cols, set, 0, &part);
+    while (part.col < part.col_end)
+    {
+        rest_on_part(ball, surface, &part, rest_z_site_m);
+        end = next_part(cols, set, end, &part);
+    }
+}
+
+void nav_relief_rest(nav_relief_t *relief,
+                     const nav_surface_t *surface,
+                     const nav_surface_state_t *changes,
+                     double radius_m)
+{
+    const ball_t ball = ball_of(radius_m, surface->cell_m);
+    const int32_t reach = (ball.reach + (SIDE - 1)) / SIDE; /* in blocks */
+    const blocks_t rows = blocks_from(surface->origin_row);
+    const blocks_t cols = blocks_from(surface->origin_col);
+    row_t blocks[NAV_BLOCKS_SIDE];
+
+    (void) nav_heightmap_follow(relief->rest_z_site_m, NAV_HEIGHTMAP_SIZE,
+                                (int64_t) surface->origin_row - (int64_t) relief->origin_row,
+                                (int64_t) surface->origin_col - (int64_t) relief->origin_col);
+    for (int32_t row = 0; row < rows.count; row++)
+    {
+        blocks[row] = row_from(changes, &cols, in_tables(&rows, row), relief->surface_count);
+    }
+    for (int32_t row = 0; row < rows.count; row++)
+    {
+        const part_t part = {first_cell(&rows, row), first_cell(&rows, row + 1), 0, 0};
+        const uint64_t reached = reached_in_row(blocks, row, rows.count, reach);
+        forget_blocks(&cols, reached, part, relief->rest_z_site_m);
+        rest_on_blocks(&ball, surface, &cols, reached & ~blocks[row].blank, part,
+                       relief->rest_z_site_m);
+    }
+    relief->surface_count = changes->surface_count;
+    relief->origin_row = surface->origin_row;
+    relief->origin_col = surface->origin_col;
 }

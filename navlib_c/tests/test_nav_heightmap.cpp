@@ -577,3 +577,21 @@ TEST_F(NavHeightmap, MakingWhatChangedIsTheSameToTheLastBitAsMakingAll)
         }
     }
 }
+
+TEST_F(NavHeightmap, HeightsFollowTheCornerAsLongAsSomeStay)
+{
+    std::vector<float> z(NAV_HEIGHTMAP_CELLS);
+    z[(100 * kSize) + 200] = 5.0F;
+    EXPECT_TRUE(nav_heightmap_follow(z.data(), kSize, 0, 0));
+    EXPECT_EQ(z[(100 * kSize) + 200], 5.0F);
+    EXPECT_TRUE(nav_heightmap_follow(z.data(), kSize, 3, -20));
+    EXPECT_EQ(z[(97 * kSize) + 220], 5.0F);
+    EXPECT_TRUE(nav_heightmap_follow(z.data(), kSize, -30, 7));
+    EXPECT_EQ(z[(127 * kSize) + 213], 5.0F);
+    for (int64_t far : {int64_t{-kSize}, int64_t{kSize}})
+    {
+        EXPECT_FALSE(nav_heightmap_follow(z.data(), kSize, far, 0));
+        EXPECT_FALSE(nav_heightmap_follow(z.data(), kSize, 0, far));
+    }
+    EXPECT_EQ(z[(127 * kSize) + 213], 5.0F);
+}

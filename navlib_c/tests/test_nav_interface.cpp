@@ -377,6 +377,7 @@ TEST_F(Interface, an_analysis_does_not_depend_on_what_earlier_ones_left_to_reuse
         analyze.pose.y_site_m = -0.7 * step;
         forgetful.ctx->surface_state = {};
         forgetful.ctx->costmap_state = {};
+        forgetful.ctx->relief = {};
         nav_ctx_t *contexts[2] = {scene.ctx.get(), forgetful.ctx.get()};
         for (int k = 0; k < 2; k++)
         {
@@ -401,6 +402,9 @@ TEST_F(Interface, an_analysis_does_not_depend_on_what_earlier_ones_left_to_reuse
                   std::memcmp(&scene.ctx->surface, &forgetful.ctx->surface, sizeof(nav_surface_t)));
         ASSERT_EQ(0,
                   std::memcmp(&scene.ctx->costmap, &forgetful.ctx->costmap, sizeof(nav_costmap_t)));
+        ASSERT_EQ(0,
+                  std::memcmp(scene.ctx->relief.rest_z_site_m, forgetful.ctx->relief.rest_z_site_m,
+                              sizeof(scene.ctx->relief.rest_z_site_m)));
     }
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstring>
 #include <random>
 
 #include "nav_scene.hpp"
@@ -169,6 +170,164 @@ TEST(Rest, a_ball_near_unknown_ground_or_the_edge_could_be_anywhere)
     EXPECT_GT(rest_m(scene, 160, 296), 1e8);
     EXPECT_LT(rest_m(scene, 4, 160), 0.02);
     EXPECT_LT(rest_m(scene, 160, 295), 0.02);
+}
+
+/// Surfaces of a drive, and balls on each.
+class RestOnDrive : public testing::Test
+{
+  protected:
+    void begin(double cell_m, double radius_m)
+    {
+        params.heightmap_cell_m = cell_m;
+        params.wheel_radius_m = radius_m;
+        nav_heightmap_init(&ctx->heightmap, &params);
+        ctx->surface_state = {};
+        ctx->relief = {};
+    }
+
+    /// Known ground of a size in cells with a few gaps, some cells ahead of a place in cells.
+    void show(int row, int col, int size, int ahead)
+    {
+        const double cell_m = params.heightmap_cell_m;
+        const nav_pose_t pose = {row * cell_m, col * cell_m, 0.0, 0.0, 0.0, 0.0};
+        std::uniform_real_distribution<double> unit(0.0, 1.0);
+        std::vector<nav_point_t> points;
+        for (int k = 0; k < size * size; k++)
+        {
+            const bool is_hole = (random() % 400U) == 0U;
+            points.push_back(
+                {static_cast<float>((ahead + (k / size) + 0.5) * cell_m),
+                 static_cast<float>(((k % size) - (size / 2) + 0.5) * cell_m),
+                 static_cast<float>(0.2 * unit(random) - (random() % 30U ? 0.0 : 0.3))});
+            if (is_hole)
+            {
+                points.resize(points.size() - std::min<size_t>(points.size(), 3U));
+            }
+        }
+        step += 1U;
+        ASSERT_TRUE(nav_heightmap_center(&ctx->heightmap, pose.x_site_m, pose.y_site_m));
+        for (size_t k = 0; k < points.size(); k += NAV_CHUNK_POINTS_MAX)
+        {
+            nav_heightmap_merge(
+                &ctx->heightmap, &pose, step, step, &points[k],
+                static_cast<uint32_t>(std::min<size_t>(points.size() - k, NAV_CHUNK_POINTS_MAX)));
+        }
+        surface_again();
+    }
+
+    void surface_again()
+    {
+        nav_heightmap_surface(&ctx->heightmap, &params, step, &ctx->surface_state, &ctx->surface);
+    }
+
+    void rest(nav_relief_t &relief) const
+    {
+        nav_relief_rest(&relief, &ctx->surface, &ctx->surface_state, params.wheel_radius_m);
+    }
+
+    /// What the header says of a cell, without any short cut.
+    float plainly(int row, int col) const
+    {
+        const double cell_m = params.heightmap_cell_m;
+        const int reach = static_cast<int>((params.wheel_radius_m / cell_m) + 2.0);
+        const auto fall_m = [&](int away)
+        {
+            const double away_m = away * cell_m;
+            return static_cast<float>(((away_m * away_m) - (0.5 * cell_m * cell_m)) /
+                                      (2.0 * params.wheel_radius_m));
+        };
+        float highest_m = NAV_SURFACE_UNKNOWN_M;
+        for (int r = row - reach; r <= row + reach; r++)
+        {
+            for (int c = col - reach; c <= col + reach; c++)
+            {
+                const bool is_on =
+                    (r >= 0) && (r < NAV_HEIGHTMAP_SIZE) && (c >= 0) && (c < NAV_HEIGHTMAP_SIZE);
+                const float z_m = is_on ? ctx->surface.z_site_m[(r * NAV_HEIGHTMAP_SIZE) + c]
+                                        : NAV_SURFACE_UNKNOWN_M;
+                if (z_m >= NAV_SURFACE_UNKNOWN_M)
+                {
+                    return -NAV_SURFACE_UNKNOWN_M;
+                }
+                highest_m = std::min(highest_m, (z_m + fall_m(r - row)) + fall_m(c - col));
+            }
+        }
+        return highest_m;
+    }
+
+    /// Balls rest on what changed: as on all of it, and as the header says.
+    void expect_rest_of_all()
+    {
+        auto fresh = std::make_unique<nav_relief_t>();
+        rest(*fresh);
+        rest(ctx->relief);
+        ASSERT_EQ(0, std::memcmp(fresh->rest_z_site_m, ctx->relief.rest_z_site_m,
+                                 sizeof(fresh->rest_z_site_m)));
+        for (int k = 0; k < 3000; k++)
+        {
+            const int row = static_cast<int>(random() % NAV_HEIGHTMAP_SIZE);
+            const int col = static_cast<int>(random() % NAV_HEIGHTMAP_SIZE);
+            const float rest_z_m = fresh->rest_z_site_m[(row * NAV_HEIGHTMAP_SIZE) + col];
+            ASSERT_EQ(plainly(row, col), rest_z_m) << row << ", " << col;
+            known_count += (rest_z_m > -NAV_SURFACE_UNKNOWN_M) ? 1 : 0;
+        }
+    }
+
+    nav_params_t params = []
+    {
+        nav_params_t defaults;
+        nav_params_default(&defaults);
+        return defaults;
+    }();
+    std::unique_ptr<nav_ctx_t> ctx = std::make_unique<nav_ctx_t>();
+    std::mt19937 random{7};
+    uint32_t step = 0;
+    int known_count = 0;
+};
+
+TEST_F(RestOnDrive, is_the_same_to_the_last_bit_on_what_changed_as_on_all)
+{
+    /* balls that reach 4 cells, as far as any, and as little */
+    for (const auto &[cell_m, radius_m] : {std::pair{0.1, RADIUS_M}, {0.05, 0.5}, {0.2, 0.05}})
+    {
+        begin(cell_m, radius_m);
+        params.heightmap_expiry_s = 10.0;
+        known_count = 0;
+        int row = -7;
+        int col = 3;
+        show(row, col, 290, -145);
+        ASSERT_NO_FATAL_FAILURE(expect_rest_of_all());
+        for (int k = 0; k < 24; k++)
+        {
+            row += static_cast<int>(random() % 23U) - ((k < 12) ? 3 : 19);
+            col += static_cast<int>(random() % 23U) - 11;
+            col += (k == 18) ? 400 : 0; // nothing stays
+            show(row, col, ((k % 6) == 5) ? 290 : 120, ((k % 6) == 5) ? -145 : 10);
+            ASSERT_NO_FATAL_FAILURE(expect_rest_of_all()) << k;
+        }
+        EXPECT_GT(known_count, 5000);
+    }
+}
+
+TEST_F(RestOnDrive, is_not_done_again_far_from_what_changed)
+{
+    begin(0.1, RADIUS_M);
+    show(0, 0, 300, -150);
+    rest(ctx->relief);
+    const int place = (60 * NAV_HEIGHTMAP_SIZE) + 60;
+    ctx->relief.rest_z_site_m[place] = 7.0F; // what only another rest could replace
+    surface_again();
+    rest(ctx->relief);
+    EXPECT_EQ(7.0F, ctx->relief.rest_z_site_m[place]);
+    show(0, 0, 60, 0);
+    rest(ctx->relief);
+    EXPECT_EQ(7.0F, ctx->relief.rest_z_site_m[place]);
+    show(0, 0, 60, -120);
+    rest(ctx->relief);
+    EXPECT_EQ(7.0F, ctx->relief.rest_z_site_m[place]);
+    show(0, -60, 60, 0); // the map rolls: what was made before moves along
+    rest(ctx->relief);
+    EXPECT_EQ(7.0F, ctx->relief.rest_z_site_m[place + 60]);
 }
 
 } // namespace
