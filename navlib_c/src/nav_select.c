@@ -5,6 +5,7 @@
  */
 #include "nav_select.h"
 
+#include "nav_guard.h"
 #include "nav_rank.h"
 #include "nav_show.h"
 #include "nav_trial.h"
@@ -114,7 +115,8 @@ static void take_short(nav_trial_t *trial, nav_select_arc_out_t *out)
 {
     uint32_t node = cheapest_first(trial);
     bool is_found = false;
-    while ((node < FIRST_ARCS) && !is_found)
+    /* every test refuses one more, or finds one */
+    for (uint32_t k = 0U; NAV_ALWAYS(k <= FIRST_ARCS) && (node < FIRST_ARCS) && !is_found; k++)
     {
         is_found = nav_trial_first(trial, node) == NAV_REASON_NONE;
         if (is_found)
