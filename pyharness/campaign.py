@@ -14,7 +14,7 @@ from pydantic import AfterValidator, Discriminator, Field, JsonValue, Tag, model
 
 from pyharness.campaigns import BUILT_IN, built_in
 from pyharness.errors import HarnessError
-from pyharness.scenario import NAME, Scenario, load_scenario
+from pyharness.scenario import NAME, Scenario, check_name, load_scenario
 from sim.config import ConfigModel, load_model
 from sim.errors import ConfigError
 from sim.random_streams import SEED_MAX
@@ -28,12 +28,6 @@ OVERRIDE_PLACE = re.compile(r"--set (?P<key>[^:]+): (?:(?P<inner>[\w.-]+): )?(?P
 
 Seed = Annotated[int, Field(ge=0, le=SEED_MAX)]
 Settings = dict[str, JsonValue]
-
-
-def _check_name(name: str) -> str:
-    if not NAME.fullmatch(name):
-        raise ValueError(f"expected letters, digits, '.', '_' and '-', got {name!r}")
-    return name
 
 
 def _check_distinct(values: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -127,7 +121,7 @@ class Campaign(ConfigModel):
         folder: Where relative names of files start; that of the campaign's file if left out.
     """
 
-    name: Annotated[str, AfterValidator(_check_name)]
+    name: Annotated[str, AfterValidator(check_name)]
     scenario: Annotated[Settings, AfterValidator(_check_settings)] = Field(default_factory=dict)
     axes: Annotated[
         dict[str, Annotated[tuple[JsonValue, ...], AfterValidator(_check_distinct)]],
@@ -141,7 +135,7 @@ class Campaign(ConfigModel):
     planners: Annotated[tuple[str, ...], AfterValidator(_check_distinct)] = ("enav",)
     parameter_sets: Annotated[
         dict[
-            Annotated[str, AfterValidator(_check_name)],
+            Annotated[str, AfterValidator(check_name)],
             Annotated[Settings, AfterValidator(_check_parameter_set)],
         ],
         Field(min_length=1),

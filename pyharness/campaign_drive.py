@@ -2,6 +2,8 @@
 """One drive of a campaign: a scenario in, a result and the files that are kept out."""
 
 import json
+from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Literal
 
@@ -11,7 +13,7 @@ from pyharness.dp_file import DpWriter
 from pyharness.drive_folder import SCENARIO_FILE, summarized_drive, write_products
 from pyharness.history import History
 from pyharness.planners import load_planner
-from pyharness.records import Outcome
+from pyharness.records import Outcome, Record
 from pyharness.scenario import Scenario, check_places, drive_info, make_terrain
 from sim.config import dump_model
 
@@ -28,14 +30,13 @@ def run_campaign_drive(scenario: Scenario, keep: Keep, folder: Path) -> None:
     planner_class = load_planner(scenario.planner)
     history = History(native_schema(), drive_info(scenario))
     kept = folder / KEPT_FOLDER
-    if keep == "all":
-        kept.mkdir()
-        with DpWriter(kept / "drive.dp", history.info) as writer:
-            summary = summarized_drive(
-                scenario, terrain, planner_class, history, [writer.write, history.take]
-            )
-    else:
-        summary = summarized_drive(scenario, terrain, planner_class, history, [history.take])
+    subscribers: list[Callable[[Record], None]] = [history.take]
+    with ExitStack() as files:
+        if keep == "all":
+            kept.mkdir()
+            writer = files.enter_context(DpWriter(kept / "drive.dp", history.info))
+            subscribers.insert(0, writer.write)
+        summary = summarized_drive(scenario, terrain, planner_class, history, subscribers)
     is_reached = Outcome(summary["outcome"]).is_reached
     if keep == "all" or (keep == "failures" and not is_reached):
         kept.mkdir(exist_ok=True)

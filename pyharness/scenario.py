@@ -172,7 +172,7 @@ else:
     )
 
 
-def _check_name(name: str) -> str:
+def check_name(name: str) -> str:
     """Refuse names that cannot be part of a folder's name."""
     if not NAME.fullmatch(name):
         raise ValueError(f"expected letters, digits, '.', '_' and '-', got {name!r}")
@@ -191,7 +191,7 @@ VehicleSection = Annotated[
 class Scenario(ConfigModel):
     """A drive. What is left out has a default; `resolve` fills it in."""
 
-    name: Annotated[str, AfterValidator(_check_name)] = "demo"
+    name: Annotated[str, AfterValidator(check_name)] = "demo"
     seed: Annotated[int, Field(ge=0, le=SEED_MAX)] = 0
     terrain: TerrainSection = TerrainSection(cfa=0.07)
     start: tuple[float, float, float] = (-40.0, 0.0, 0.0)  # north, east, yaw in degrees
