@@ -12,7 +12,7 @@
 #ifndef NAV_ACE_H
 #define NAV_ACE_H
 
-#include "nav_arc.h"
+#include "nav_places.h"
 #include "nav_states.h"
 
 #define NAV_ACE_BOUNDS_FIELDS(S, A, N, M)                                                          \
@@ -42,21 +42,6 @@
       "alone refused")
 NAV_RECORD(NAV_ACE_BOUNDS_FIELDS, nav_ace_bounds_t);
 
-/** The states an attempt assumes the rover stays within. Bounds found from such a range that lie
- * inside it are certified: the map from states to states then has its fixed point, the settled
- * rover, inside (Brouwer). */
-typedef struct
-{
-    double middle[NAV_LINKAGE_STATES];
-    double half[NAV_LINKAGE_STATES];
-    double forward_m[NAV_WHEELS]; /* places of the wheels in the middle state */
-    double right_m[NAV_WHEELS];
-    double height_m[NAV_WHEELS];
-    double close_from_m; /* wheels whose rough heights span more are looked at closely */
-    double widest_m;     /* largest span of rough heights */
-    bool is_bounded;     /* it led to states, and no wheel's places have grown to the limit */
-} nav_ace_range_t;
-
 /** The limits that bounds are held against. */
 typedef struct
 {
@@ -82,7 +67,11 @@ typedef struct
 typedef struct
 {
     nav_ace_view_t view;
-    nav_ace_range_t range;
+    nav_places_t
+        assumed; /* by an attempt; when those that follow lie inside, these are certified: the map
+                             from places to places then has its fixed point, the settled rover, inside (Brouwer) */
+    nav_interval_t heights[NAV_WHEELS];
+    nav_places_t places; /* that follow from the heights */
     nav_spanned_t spanned;
 } nav_ace_work_t;
 

@@ -85,6 +85,9 @@ typedef struct
     double cells_per_m;
     int32_t cost_row; /* heightmap cells from the costmap's first row to the surface's */
     int32_t cost_col;
+    double tile_north_m; /* of the middle of the first costmap cell from the pose */
+    double tile_east_m;
+    double tile_side_m; /* of a costmap cell */
     nav_lanes_t lanes;
 } nav_ground_t;
 
@@ -102,11 +105,9 @@ typedef struct
     nav_indices_t cols;
 } nav_cost_box_t;
 
-/** Heights of the ground of one costmap cell over the plane, and where its middle is from the pose. */
+/** Heights of the ground of one costmap cell over the plane. */
 typedef struct
 {
-    double north_m;
-    double east_m;
     nav_interval_t above; /* vertical */
     bool is_whole;        /* false: not all of it is known, and the heights hold for nothing */
 } nav_tile_t;
@@ -130,8 +131,15 @@ nav_indices_t nav_ground_between(double low, double high);
  */
 bool nav_ground_cost_box(const nav_ground_t *ground, const nav_box_t *box, nav_cost_box_t *cells);
 
-/** The ground of a costmap cell of nav_ground_cost_box. */
-nav_tile_t nav_ground_tile(const nav_ground_t *ground, int32_t cost_row, int32_t cost_col);
+/** How far north of the pose the middle of a row of costmap cells is. */
+double nav_ground_tile_north_m(const nav_ground_t *ground, int32_t cost_row);
+
+/** How far east of the pose the middle of a column of costmap cells is. */
+double nav_ground_tile_east_m(const nav_ground_t *ground, int32_t cost_col);
+
+/** The ground of a costmap cell of nav_ground_cost_box, given where its middle is from the pose. */
+nav_tile_t nav_ground_tile(
+    const nav_ground_t *ground, int32_t cost_row, int32_t cost_col, double north_m, double east_m);
 
 /**
  * Between which heights over the plane all ground lies whose foot is in a box: from whole costmap

@@ -26,7 +26,6 @@ typedef struct
 
 /**
  * Solves the linkage for the middles of the intervals, and linearizes it there. Sines and cosines are left alone.
- * @param spanned  its state holds a guess
  * @return false when no state has such heights
  */
 bool nav_states_solve(const nav_vehicle_t *vehicle,

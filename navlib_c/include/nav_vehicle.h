@@ -37,6 +37,9 @@ typedef struct
     double bogie_pivot_height_m;
     double flat_inverse[NAV_LINKAGE_STATES]
                        [NAV_WHEELS]; /* derivatives of the state on flat ground */
+    double
+        forward_per_height[NAV_WHEELS]
+                          [NAV_WHEELS]; /* and of where each hub is, fore and aft, by all heights */
 } nav_vehicle_t;
 
 /** A state found for six wheel heights, and how the state changes with them. */

@@ -17,73 +17,51 @@
 #include "nav_ground.h"
 #include "nav_math.h"
 #include "nav_minmax.h"
+#include "nav_places.h"
 #include "nav_rough.h"
 #include "nav_wheel.h"
 
-/* Attempts to find a range of states that is consistent: first around where the nearest cells put the
- * wheels, then each around the solution of the one before. */
-#define ATTEMPTS 6U
+/* Attempts to find places of the wheels that are consistent: first around where the nearest cells put
+ * them, then each around the heights of the attempt before. */
+#define ATTEMPTS 5U
 #define GROWTH_MIN_M 0.02
-#define GROWTH_MAX_M 0.8 /* a range that grows a wheel's places to this certifies nothing */
-#define WHEELS_PER_SIDE 3U
-
-/* Share of a turn in the plane that its linear formula can be wrong by, slopes up to 30 deg. */
-#define TURN_ERROR 0.2
-
-/* How far a wheel can be above or below the body's ground level, and its change per bogie angle. */
-#define WHEEL_TRAVEL_M 0.35
-#define WHEEL_SWAY 0.8
-
-/* From a point of the surface to the cells it hangs on, on any heading: a diagonal. */
-#define CELLS_AROUND 1.42
+#define GROWTH_MAX_M 0.8 /* places that far around certify nothing */
 
 /* Single heightmap cells are looked at where coarse heights would move a wheel's places on a slope by
  * more than this. */
 #define COARSE_SHIFT_M 0.01
 
-/* Attempt by attempt: wheels whose rough heights span more are looked at closely. */
-static const double CLOSE_FROM_M[ATTEMPTS] = {NAV_ETA_NONE, 0.1, 0.05, 0.0, 0.0, 0.0};
+/* From a point of the surface to the cells it hangs on, on any heading: a diagonal. */
+#define CELLS_AROUND 1.42
 
-/* Where rough heights span more than this, wheel drop is looked at first, within this part of the range. */
+/* Attempt by attempt: wheels whose rough heights span more are looked at closely. */
+static const double CLOSE_FROM_M[ATTEMPTS] = {NAV_ETA_NONE, 0.2, 0.1, 0.05, 0.0};
+
+/* Where rough heights span more than this, wheel drop is looked at first, while the heights of the wheels
+ * are within this of the nearest cells. */
 #define SUSPECT_M 0.15
-#define DROP_PART 0.3
+#define DROP_HALF_M 0.02
 
 /* Bounds that refuse a pose are tightened this often at most, while clearance and wheel drop are no further
  * from their limits than this the first time, then than what the last time has gained, and than this. */
 #define TIGHTENINGS 3U
-#define FIRST_GAIN_M 0.1
+static const double TIGHTEN_FROM_M[TIGHTENINGS] = {0.05, 0.0, 0.0};
+#define FIRST_GAIN_M 0.08
 #define FIRST_DROP_GAIN_M 0.4
 #define LEAST_GAIN_M 0.02
 #define LEAST_DROP_GAIN_M 0.05
 
-/* Half widths that a range has at least: m, and rad for roll, pitch, rocker, bogies. Between walls a
- * rover can stand in more than one way; a range holds all of those that are near. */
-static const double LEAST_HALF[NAV_LINKAGE_STATES] = {0.05, 0.04, 0.05, 0.04, 0.12, 0.12};
+/* Half of what the height of a wheel is assumed to span at least. Between walls a rover can stand in more
+ * than one way; places hold all of those that are near. */
+#define LEAST_HALF_M 0.06
 
-/* A new range is wider than the solution it is made from, so that it can hold the next: little at
- * first, for tight bounds, then more, for bounds at all. */
+/* Heights are assumed to span more than what was found, so that they can hold the next: little at first,
+ * for tight bounds, then more, for bounds at all. */
 #define WIDENING_FIRST 0.95
 #define WIDENING_STEP 0.15
 
 /* The nearest cells say little where they are this far off the plane. */
 #define FIRST_HEIGHT_MAX_M 0.3
-
-/** How far a part of the rover can be from its nominal place in the plane. */
-typedef struct
-{
-    double u_m;
-    double v_m;
-} growth_t;
-
-/** What is the same for all parts: turns and leans of a range. */
-typedef struct
-{
-    double turn; /* half width of the turn in the plane */
-    double bend; /* second-order share of turning */
-    double u_m;  /* growth of a part at the origin */
-    double v_m;
-    double box_turn; /* how far a wheel and its box can be turned from the heading */
-} common_t;
 
 static double squared(double x)
 {
@@ -106,129 +84,27 @@ static nav_ace_limits_t limits_of(const nav_params_t *params, bool is_leaving)
     return is_leaving ? leaving : planned;
 }
 
-/* ------------------------------------------------------------------ places of the wheels */
+/* ------------------------------------------------------------------ heights of the wheels */
 
-/** The turn in the plane that keeps a pitched rover's yaw, which is measured in the horizontal. */
-static double turn_of_pitch(const nav_ace_view_t *view, double pitch_rad)
-{
-    return pitch_rad * view->ground.rise_right;
-}
-
-/** Growth that all parts share: uncertainty, and what slopes make of the range. */
-static common_t common_of(const nav_ace_view_t *view, const double middle[], const double half[])
-{
-    const double p = view->uncertainty.position_m;
-    const double lift_m = half[NAV_LINKAGE_HEIGHT];
-    const double middle_turn = fabs(turn_of_pitch(view, middle[NAV_LINKAGE_PITCH]));
-    const double half_turn = fabs(turn_of_pitch(view, half[NAV_LINKAGE_PITCH]));
-    const double turn = view->uncertainty.yaw_rad + half_turn + (TURN_ERROR * middle_turn);
-    const common_t common = {
-        turn,
-        0.5 * squared(turn + middle_turn),
-        p + (lift_m * fabs(view->ground.rise_forward)),
-        p + (lift_m * fabs(view->ground.rise_right)),
-        view->uncertainty.yaw_rad + middle_turn + half_turn,
-    };
-    return common;
-}
-
-static growth_t growth_of(const common_t *common, double u_m, double v_m)
-{
-    const growth_t growth = {
-        common->u_m + (common->turn * fabs(v_m)) + (common->bend * fabs(u_m)),
-        common->v_m + (common->turn * fabs(u_m)) + (common->bend * fabs(v_m)),
-    };
-    return growth;
-}
-
-/** How far the suspension swings a hub fore and aft of its place in the middle of a range. */
-static double wheel_swing_m(const nav_vehicle_t *vehicle,
-                            const nav_ace_range_t *range,
-                            uint32_t wheel)
-{
-    const double u_m = vehicle->hub_x_m[wheel];
-    const double pivot_m = vehicle->rocker_pivot_x_m;
-    const uint32_t bogie = (uint32_t) NAV_LINKAGE_BOGIE_LEFT + (wheel / WHEELS_PER_SIDE);
-    const double pitch = range->half[NAV_LINKAGE_PITCH];
-    const double middle_pitch = fabs(range->middle[NAV_LINKAGE_PITCH]);
-    const double turn_1 = pitch + range->half[NAV_LINKAGE_ROCKER];
-    const double turn_2 = turn_1 + range->half[bogie];
-    const double at_1 = middle_pitch + fabs(range->middle[NAV_LINKAGE_ROCKER]) + (0.5 * turn_1);
-    const double at_2 = at_1 + fabs(range->middle[bogie]) + (0.5 * range->half[bogie]);
-    double swing_m = (vehicle->hub_height_m * pitch) +
-                     ((vehicle->rocker_pivot_height_m - vehicle->hub_height_m) *
-                      range->half[NAV_LINKAGE_ROCKER]) +
-                     (fabs(pivot_m) * pitch * (middle_pitch + (0.5 * pitch)));
-    if ((wheel % WHEELS_PER_SIDE) == 0U)
-    {
-        swing_m += fabs(u_m - pivot_m) * turn_1 * at_1;
-    }
-    else
-    {
-        swing_m += ((vehicle->bogie_pivot_height_m - vehicle->hub_height_m) * range->half[bogie]) +
-                   (fabs(vehicle->bogie_pivot_x_m - pivot_m) * turn_1 * at_1) +
-                   (fabs(u_m - vehicle->bogie_pivot_x_m) * turn_2 * at_2);
-    }
-    return swing_m;
-}
-
-static growth_t growth_wheel(const nav_ace_view_t *view,
-                             const nav_ace_range_t *range,
-                             const common_t *common,
-                             uint32_t wheel)
-{
-    const double v_m = view->vehicle->hub_y_m[wheel];
-    const double roll = range->half[NAV_LINKAGE_ROLL];
-    const double roll_far = fabs(range->middle[NAV_LINKAGE_ROLL]) + roll;
-    growth_t growth = growth_of(common, view->vehicle->hub_x_m[wheel], v_m);
-    growth.u_m = nav_clamp(growth.u_m + wheel_swing_m(view->vehicle, range, wheel), GROWTH_MIN_M,
-                           GROWTH_MAX_M);
-    /* the ends of the disc swing sideways as the rover turns; a wheel above or below the body's ground
-     * level leans sideways with roll */
-    growth.v_m = nav_min(growth.v_m + (common->box_turn * view->params->wheel_radius_m) +
-                             (WHEEL_TRAVEL_M * roll) + (fabs(v_m) * roll * roll_far) +
-                             (roll_far * WHEEL_SWAY * range->half[NAV_LINKAGE_BOGIE_LEFT]),
-                         GROWTH_MAX_M);
-    return growth;
-}
-
-/** The middle of a wheel's places, in the plane frame. */
-static void wheel_middle(const nav_ace_view_t *view,
-                         const nav_ace_range_t *range,
-                         uint32_t wheel,
-                         nav_box_t *box)
-{
-    const double turn = turn_of_pitch(view, range->middle[NAV_LINKAGE_PITCH]);
-    const double lifted_m = range->middle[NAV_LINKAGE_HEIGHT] / view->ground.cos_slope;
-    const double u_m = range->forward_m[wheel];
-    const double v_m = range->right_m[wheel];
-    box->u_m = (lifted_m * view->ground.forward_up) + (u_m - (turn * v_m));
-    box->v_m = (lifted_m * view->ground.right_up) + (v_m + (turn * u_m));
-}
-
+/** The box of a wheel, which leans and turns with the body. */
 static nav_footprint_t wheel_footprint(const nav_ace_view_t *view,
-                                       const nav_ace_range_t *range,
-                                       const common_t *common,
-                                       const growth_t *growth,
+                                       const nav_places_t *places,
                                        uint32_t wheel)
 {
     const nav_params_t *params = view->params;
     nav_footprint_t footprint = {
+        .box = places->wheels[wheel],
         .radius_m = params->wheel_radius_m,
-        .hub_m = range->height_m[wheel] + params->wheel_radius_m,
-        .pitch_rad = range->middle[NAV_LINKAGE_PITCH],
-        .roll_rad = range->middle[NAV_LINKAGE_ROLL],
+        .hub_m = places->height_m[wheel] + params->wheel_radius_m,
+        .pitch_rad = places->pitch_rad,
+        .roll_rad = places->roll_rad,
     };
-    wheel_middle(view, range, wheel, &footprint.box);
-    footprint.box.half_u_m = params->wheel_radius_m + growth->u_m +
-                             (range->half[NAV_LINKAGE_PITCH] * NAV_STAND_MAX_M) +
-                             (common->box_turn * 0.5 * params->wheel_width_m);
-    footprint.box.half_v_m = (0.5 * params->wheel_width_m) + growth->v_m +
-                             (range->half[NAV_LINKAGE_ROLL] * NAV_STAND_MAX_M);
+    footprint.box.half_u_m += params->wheel_radius_m + (places->pitch_half_rad * NAV_STAND_MAX_M) +
+                              (places->reach.box_turn * 0.5 * params->wheel_width_m);
+    footprint.box.half_v_m +=
+        (0.5 * params->wheel_width_m) + (places->roll_half_rad * NAV_STAND_MAX_M);
     return footprint;
 }
-
-/* ------------------------------------------------------------------ heights of the wheels */
 
 /** The ground in a wheel's box: coarse where that is enough, cell by cell where it is not. */
 static nav_span_t wheel_ground(const nav_ace_view_t *view,
@@ -252,13 +128,11 @@ static bool is_any_known(const nav_span_t *span)
 
 /** Heights of one wheel by its disc. @return false when nothing is known under it */
 static bool wheel_closely(const nav_ace_view_t *view,
-                          const nav_ace_range_t *range,
-                          const common_t *common,
-                          const growth_t *growth,
+                          const nav_places_t *places,
                           uint32_t wheel,
                           nav_interval_t *hub)
 {
-    nav_footprint_t footprint = wheel_footprint(view, range, common, growth, wheel);
+    nav_footprint_t footprint = wheel_footprint(view, places, wheel);
     const double right_up = view->ground.right_up;
     const double around_m = CELLS_AROUND * view->ground.surface->cell_m;
     /* on a slope the heights around move the feet of what a wheel stands on */
@@ -273,53 +147,50 @@ static bool wheel_closely(const nav_ace_view_t *view,
     {
         const double shift_m = 0.5 * (span.above.high_m + span.above.low_m) * right_up;
         const double reach_m = 0.5 * (span.above.high_m - span.above.low_m) * fabs(right_up);
-        const nav_box_t places = {footprint.box.u_m, footprint.box.v_m - shift_m, growth->u_m,
-                                  growth->v_m + reach_m};
-        *hub =
-            nav_wheel_interval(&view->ground, &places, &span.above, view->params->wheel_radius_m);
+        nav_box_t feet = places->wheels[wheel];
+        feet.v_m -= shift_m;
+        feet.half_v_m += reach_m;
+        *hub = nav_wheel_interval(&view->ground, &feet, &span.above, view->params->wheel_radius_m);
     }
     return is_known;
 }
 
-/** Heights of one wheel: rough where they span little enough. @return false when nothing is known under
- * it */
-static bool wheel_hub(const nav_ace_view_t *view,
-                      nav_ace_range_t *range,
-                      const common_t *common,
-                      uint32_t wheel,
-                      nav_interval_t *hub)
+/** Heights of the wheels at their places: rough where they span little enough. @return false when nothing is
+ * known under one of them */
+static bool wheel_heights(const nav_ace_view_t *view,
+                          const nav_places_t *places,
+                          double close_from_m,
+                          nav_interval_t heights[NAV_WHEELS])
 {
-    const growth_t growth = growth_wheel(view, range, common, wheel);
-    const double lean = fabs(range->middle[NAV_LINKAGE_ROLL]) + range->half[NAV_LINKAGE_ROLL];
-    nav_box_t places = {0.0, 0.0, growth.u_m, growth.v_m};
+    const double radius_m = view->params->wheel_radius_m;
+    const double lean_rad = fabs(places->roll_rad) + places->roll_half_rad;
     bool is_known = true;
-    wheel_middle(view, range, wheel, &places);
-    *hub = nav_rough_interval(&view->ground, &places, range->height_m[wheel], lean,
-                              view->params->wheel_radius_m);
-    range->widest_m = nav_max(range->widest_m, hub->high_m - hub->low_m);
-    if ((hub->high_m - hub->low_m) > range->close_from_m)
+    for (uint32_t wheel = 0U; (wheel < (uint32_t) NAV_WHEELS) && is_known; wheel++)
     {
-        is_known = wheel_closely(view, range, common, &growth, wheel, hub);
+        nav_interval_t *hub = &heights[wheel];
+        *hub = nav_rough_interval(&view->ground, &places->wheels[wheel], places->height_m[wheel],
+                                  radius_m);
+        if ((hub->high_m - hub->low_m) > close_from_m)
+        {
+            is_known = wheel_closely(view, places, wheel, hub);
+        }
+        /* a wheel that leans with the body stands lower over what it touches */
+        hub->low_m -= 0.5 * radius_m * squared(lean_rad);
     }
-    range->is_bounded =
-        range->is_bounded && (growth.u_m < GROWTH_MAX_M) && (growth.v_m < GROWTH_MAX_M);
     return is_known;
 }
 
 /** Wheel drop and unknown share over all wheels. */
 static void drop_bounds(const nav_ace_view_t *view,
-                        const nav_ace_range_t *range,
+                        const nav_places_t *places,
                         nav_ace_bounds_t *bounds)
 {
-    const common_t common = common_of(view, range->middle, range->half);
-    const double coarse_span_max_m = view->limits.wheel_drop_max_m;
     bounds->wheel_drop_max_m = 0.0;
     bounds->wheel_unknown = 0.0;
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
     {
-        const growth_t growth = growth_wheel(view, range, &common, wheel);
-        const nav_footprint_t footprint = wheel_footprint(view, range, &common, &growth, wheel);
-        const nav_span_t span = wheel_ground(view, &footprint, coarse_span_max_m);
+        const nav_footprint_t footprint = wheel_footprint(view, places, wheel);
+        const nav_span_t span = wheel_ground(view, &footprint, view->limits.wheel_drop_max_m);
         const double unknown =
             is_any_known(&span) ? ((double) span.unknown_count / (double) span.cell_count) : 1.0;
         bounds->wheel_unknown = nav_max(bounds->wheel_unknown, unknown);
@@ -329,59 +200,62 @@ static void drop_bounds(const nav_ace_view_t *view,
     }
 }
 
-/* ------------------------------------------------------------------ states */
+/* ------------------------------------------------------------------ places of the wheels */
 
-/** Does what was found lie inside the range that its growth assumed? */
-static bool is_consistent(const nav_spanned_t *spanned, const nav_ace_range_t *range)
+/** The places that follow from heights of the wheels; never quite without extent. */
+static void find_places(const nav_ace_view_t *view,
+                        const nav_interval_t heights[NAV_WHEELS],
+                        nav_places_t *places)
 {
-    bool is_inside = range->is_bounded;
-    for (uint32_t k = 0U; (k < (uint32_t) NAV_LINKAGE_STATES) && is_inside; k++)
+    nav_places_find(&view->ground, view->vehicle, &view->uncertainty, heights, places);
+    for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
     {
-        is_inside = (fabs(spanned->linkage.state[k] - range->middle[k]) + spanned->half[k]) <=
-                    range->half[k];
+        nav_box_t *box = &places->wheels[wheel];
+        box->half_u_m = nav_max(box->half_u_m, GROWTH_MIN_M);
+        places->is_bounded =
+            places->is_bounded && (box->half_u_m < GROWTH_MAX_M) && (box->half_v_m < GROWTH_MAX_M);
     }
-    return is_inside;
 }
 
-/** The first range: around where the cells nearest to the wheels' places put them. */
-static void range_first(const nav_ace_view_t *view, nav_ace_range_t *range)
+/** Heights around where the cells nearest to the wheels put them. */
+static void first_heights(const nav_ace_view_t *view,
+                          double half_m,
+                          nav_interval_t heights[NAV_WHEELS])
 {
     const nav_vehicle_t *vehicle = view->vehicle;
-    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
-    {
-        range->middle[k] = 0.0;
-        range->half[k] = LEAST_HALF[k];
-    }
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
     {
-        const double height_m =
+        const double found_m =
             nav_ground_eta_m(&view->ground, vehicle->hub_x_m[wheel], vehicle->hub_y_m[wheel]);
-        range->height_m[wheel] = (fabs(height_m) < FIRST_HEIGHT_MAX_M) ? height_m : 0.0;
-        for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
-        {
-            range->middle[k] += vehicle->flat_inverse[k][wheel] * range->height_m[wheel];
-        }
+        const double height_m = (fabs(found_m) < FIRST_HEIGHT_MAX_M) ? found_m : 0.0;
+        heights[wheel].low_m = height_m - half_m;
+        heights[wheel].high_m = height_m + half_m;
     }
-    nav_vehicle_wheel_places(vehicle, range->middle, range->forward_m, range->right_m);
 }
 
-/** A range around what was found, no narrower than it, nor than the least half widths. */
-static void range_around(const nav_ace_view_t *view,
-                         const nav_spanned_t *spanned,
-                         double widening,
-                         const double least_half[NAV_LINKAGE_STATES],
-                         nav_ace_range_t *range)
+/** Heights around those found, no narrower than the least. */
+static void widen_heights(double widening, nav_interval_t heights[NAV_WHEELS])
 {
-    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
-    {
-        range->middle[k] = spanned->linkage.state[k];
-        range->half[k] = nav_max(widening * spanned->half[k], least_half[k]);
-    }
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
     {
-        range->height_m[wheel] = spanned->wheel_middle_m[wheel];
+        nav_interval_t *height = &heights[wheel];
+        const double middle_m = 0.5 * (height->low_m + height->high_m);
+        const double half_m =
+            nav_max(0.5 * widening * (height->high_m - height->low_m), LEAST_HALF_M);
+        height->low_m = middle_m - half_m;
+        height->high_m = middle_m + half_m;
     }
-    nav_vehicle_wheel_places(view->vehicle, range->middle, range->forward_m, range->right_m);
+}
+
+/** Largest of what the heights of the wheels span. */
+static double widest_m(const nav_interval_t heights[NAV_WHEELS])
+{
+    double span_m = 0.0;
+    for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
+    {
+        span_m = nav_max(span_m, heights[wheel].high_m - heights[wheel].low_m);
+    }
+    return span_m;
 }
 
 /* ------------------------------------------------------------------ bounds */
@@ -449,24 +323,30 @@ static void suspension_bounds(const nav_spanned_t *spanned, nav_ace_bounds_t *bo
     bounds->bogie_right_max_rad = state[NAV_LINKAGE_BOGIE_RIGHT] + half[NAV_LINKAGE_BOGIE_RIGHT];
 }
 
-/** How far the belly can be from its nominal place in the plane, and from what stands under it. */
-static growth_t growth_belly(const nav_ace_view_t *view, const nav_spanned_t *spanned)
+/** The box of the belly, grown by how far it can be from its nominal place in the plane, and from what
+ * stands under it. */
+static nav_box_t belly_box(const nav_ace_view_t *view, const nav_spanned_t *spanned)
 {
     const nav_params_t *params = view->params;
     const double far_m = nav_max(fabs(params->belly_front_x_m), fabs(params->belly_rear_x_m));
     const double roll_half = spanned->half[NAV_LINKAGE_ROLL];
     const double pitch_half = spanned->half[NAV_LINKAGE_PITCH];
     const double lift_half_m = spanned->half[NAV_LINKAGE_HEIGHT];
+    const double pitch = spanned->linkage.state[NAV_LINKAGE_PITCH];
     const double roll_far = fabs(spanned->linkage.state[NAV_LINKAGE_ROLL]) + roll_half;
-    const double pitch_far = fabs(spanned->linkage.state[NAV_LINKAGE_PITCH]) + pitch_half;
+    const double pitch_far = fabs(pitch) + pitch_half;
     /* what is higher than the belly itself is refused wherever it stands */
     const double above_m = params->belly_height_m;
-    const common_t common = common_of(view, spanned->linkage.state, spanned->half);
-    growth_t growth = growth_of(&common, far_m, params->belly_half_width_m);
-    growth.u_m += (pitch_half * above_m) + (lift_half_m * pitch_far);
-    growth.v_m +=
-        (roll_half * above_m) + (lift_half_m * roll_far) + (pitch_half * roll_far * far_m);
-    return growth;
+    const nav_reach_t reach =
+        nav_places_reach(&view->ground, &view->uncertainty, lift_half_m, pitch, pitch_half);
+    nav_box_t box = {
+        0.5 * (params->belly_front_x_m + params->belly_rear_x_m),
+        0.0,
+        (pitch_half * above_m) + (lift_half_m * pitch_far),
+        (roll_half * above_m) + (lift_half_m * roll_far) + (pitch_half * roll_far * far_m),
+    };
+    nav_places_grow(&reach, far_m, params->belly_half_width_m, &box);
+    return box;
 }
 
 /** Lower bound of clearance and unknown share of the belly box. */
@@ -479,19 +359,15 @@ static void belly_bounds(const nav_ace_view_t *view,
         fabs(spanned->linkage.state[NAV_LINKAGE_ROLL]) + spanned->half[NAV_LINKAGE_ROLL];
     const double pitch =
         fabs(spanned->linkage.state[NAV_LINKAGE_PITCH]) + spanned->half[NAV_LINKAGE_PITCH];
-    const growth_t growth = growth_belly(view, spanned);
+    nav_box_t box = belly_box(view, spanned);
     /* the belly may stand elsewhere in its box */
-    const double less_m = (pitch * growth.u_m) + (roll * growth.v_m) + spanned->curved_m;
-    const nav_box_t box = {
-        0.5 * (params->belly_front_x_m + params->belly_rear_x_m),
-        0.0,
-        (0.5 * (params->belly_front_x_m - params->belly_rear_x_m)) + growth.u_m,
-        params->belly_half_width_m + growth.v_m,
-    };
-    const nav_clearance_t clearance =
-        nav_belly_clearance(&view->ground, spanned, &box, params->belly_height_m,
-                            turn_of_pitch(view, spanned->linkage.state[NAV_LINKAGE_PITCH]),
-                            view->limits.clearance_min_m + less_m);
+    const double less_m = (pitch * box.half_u_m) + (roll * box.half_v_m) + spanned->curved_m;
+    box.half_u_m += 0.5 * (params->belly_front_x_m - params->belly_rear_x_m);
+    box.half_v_m += params->belly_half_width_m;
+    const nav_clearance_t clearance = nav_belly_clearance(
+        &view->ground, spanned, &box, params->belly_height_m,
+        nav_places_turn(&view->ground, spanned->linkage.state[NAV_LINKAGE_PITCH]),
+        view->limits.clearance_min_m + less_m);
     bounds->clearance_min_m = clearance.clearance_min_m - less_m;
     bounds->belly_unknown = clearance.unknown;
 }
@@ -546,61 +422,38 @@ nav_reason_t nav_ace_refuse(const nav_params_t *params,
     return reason;
 }
 
-/** Does a wheel drop within a part of the first range refuse the pose? Then hardly any range does not. */
-static bool is_dropping(const nav_ace_view_t *view,
-                        nav_ace_range_t *range,
-                        nav_ace_bounds_t *bounds)
+/** Does a wheel drop refuse the pose although all heights are assumed to span hardly anything? Then hardly
+ * any others would not. */
+static bool is_dropping(const nav_ace_view_t *view, nav_ace_bounds_t *bounds)
 {
-    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
-    {
-        range->half[k] = DROP_PART * LEAST_HALF[k];
-    }
-    drop_bounds(view, range, bounds);
-    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
-    {
-        range->half[k] = LEAST_HALF[k];
-    }
+    nav_interval_t heights[NAV_WHEELS];
+    nav_places_t places;
+    first_heights(view, DROP_HALF_M, heights);
+    find_places(view, heights, &places);
+    drop_bounds(view, &places, bounds);
     return (bounds->wheel_unknown <= view->params->wheel_unknown_max) &&
            (bounds->wheel_drop_max_m > view->limits.wheel_drop_max_m);
 }
 
-/** The states that a range leads to. @return false when a wheel has nothing known to stand on */
-static bool span_range(const nav_ace_view_t *view, nav_ace_range_t *range, nav_spanned_t *spanned)
+/** The states that the linkage can take. @return false when none has such heights */
+static bool span_states(const nav_ace_view_t *view,
+                        const nav_interval_t heights[NAV_WHEELS],
+                        nav_spanned_t *spanned)
 {
-    const common_t common = common_of(view, range->middle, range->half);
-    nav_interval_t heights[NAV_WHEELS];
-    bool is_known = true;
-    range->widest_m = 0.0;
-    range->is_bounded = true;
-    for (uint32_t wheel = 0U; (wheel < (uint32_t) NAV_WHEELS) && is_known; wheel++)
-    {
-        is_known = wheel_hub(view, range, &common, wheel, &heights[wheel]);
-    }
-    bool is_spanned = is_known;
-    const bool is_flat =
-        is_known && (range->close_from_m > 0.0) && nav_states_flat(view->vehicle, heights, spanned);
-    if (is_known && !is_flat)
-    {
-        for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
-        {
-            spanned->linkage.state[k] = range->middle[k];
-        }
-        is_spanned = nav_states_solve(view->vehicle, heights, spanned);
-    }
-    range->is_bounded = range->is_bounded && is_spanned;
-    return is_spanned;
+    return nav_states_flat(view->vehicle, heights, spanned) ||
+           nav_states_solve(view->vehicle, heights, spanned);
 }
 
-/** All bounds of the states that a range has led to. */
+/** All bounds of the states that the linkage can take. */
 static void bound_states(const nav_ace_view_t *view,
-                         const nav_ace_range_t *range,
+                         const nav_places_t *places,
                          bool is_certified,
                          nav_spanned_t *spanned,
                          nav_ace_bounds_t *bounds)
 {
     nav_sincos(spanned->linkage.state[NAV_LINKAGE_ROLL], &spanned->sin_roll, &spanned->cos_roll);
     nav_sincos(spanned->linkage.state[NAV_LINKAGE_PITCH], &spanned->sin_pitch, &spanned->cos_pitch);
-    drop_bounds(view, range, bounds);
+    drop_bounds(view, places, bounds);
     suspension_bounds(spanned, bounds);
     attitude_bounds(view, spanned, bounds);
     belly_bounds(view, spanned, bounds);
@@ -608,64 +461,55 @@ static void bound_states(const nav_ace_view_t *view,
     bounds->reason = (uint32_t) nav_ace_refuse(view->params, bounds, view->is_leaving);
 }
 
-/** Certified bounds are themselves a range that the rover stays within: what follows from it is
- * certified too, and mostly tighter. */
-static void tighten(const nav_ace_view_t *view,
-                    nav_ace_range_t *range,
-                    nav_spanned_t *spanned,
-                    nav_ace_bounds_t *bounds)
+/** Certified places are where the wheels are: the heights of the ground there are theirs, too, and what
+ * follows from these is certified and mostly tighter. */
+static void tighten(nav_ace_work_t *work, double close_from_m, nav_ace_bounds_t *bounds)
 {
-    static const double NONE[NAV_LINKAGE_STATES] = {0.0};
-    range_around(view, spanned, 1.0, NONE, range);
-    range->close_from_m = 0.0;
-    (void) span_range(view, range, spanned);
-    if (range->is_bounded)
+    const nav_ace_view_t *view = &work->view;
+    if (wheel_heights(view, &work->places, close_from_m, work->heights) &&
+        span_states(view, work->heights, &work->spanned))
     {
-        bound_states(view, range, true, spanned, bounds);
+        find_places(view, work->heights, &work->places);
+        bound_states(view, &work->places, true, &work->spanned, bounds);
     }
 }
 
-/** What became of the search for a range. */
+/** What became of the search for places. */
 typedef enum
 {
     NOT_STANDING, /* nothing known to stand on, or no state */
-    DROPPING,     /* a wheel drop that is refused whatever the range */
-    STANDING,     /* states, but no consistent range */
+    DROPPING,     /* a wheel drop that is refused whatever the heights */
+    STANDING,     /* states, but no consistent places */
     CERTIFIED
 } finding_t;
 
-/** Looks for a consistent range: roughly first, then closely. */
-static finding_t find_range(const nav_ace_view_t *view,
-                            nav_ace_range_t *range,
-                            nav_spanned_t *spanned,
-                            nav_ace_bounds_t *bounds)
+/** Looks for consistent places: roughly first, then closely. */
+static finding_t find_consistent(nav_ace_work_t *work, nav_ace_bounds_t *bounds)
 {
+    const nav_ace_view_t *view = &work->view;
     finding_t finding = STANDING;
-    range_first(view, range);
-    range->is_bounded = true;
-    for (uint32_t k = 0U; (k < ATTEMPTS) && range->is_bounded && (finding == STANDING); k++)
+    bool is_bounded = true;
+    first_heights(view, LEAST_HALF_M, work->heights);
+    for (uint32_t k = 0U; (k < ATTEMPTS) && is_bounded && (finding == STANDING); k++)
     {
         if (k > 0U)
         {
-            range_around(view, spanned, WIDENING_FIRST + (WIDENING_STEP * (double) k), LEAST_HALF,
-                         range);
+            widen_heights(WIDENING_FIRST + (WIDENING_STEP * (double) k), work->heights);
         }
-        range->close_from_m = CLOSE_FROM_M[k];
-        if (!span_range(view, range, spanned))
+        find_places(view, work->heights, &work->assumed);
+        is_bounded = work->assumed.is_bounded;
+        if (!wheel_heights(view, &work->assumed, CLOSE_FROM_M[k], work->heights))
         {
             finding = NOT_STANDING;
         }
-        else if (is_consistent(spanned, range))
+        else if ((k == 0U) && (widest_m(work->heights) > SUSPECT_M) && is_dropping(view, bounds))
         {
-            finding = CERTIFIED;
+            finding = DROPPING;
         }
         else
         {
-            finding = STANDING;
-        }
-        if ((k == 0U) && (range->widest_m > SUSPECT_M) && is_dropping(view, range, bounds))
-        {
-            finding = DROPPING;
+            find_places(view, work->heights, &work->places);
+            finding = nav_places_hold(&work->assumed, &work->places) ? CERTIFIED : STANDING;
         }
     }
     return finding;
@@ -689,21 +533,18 @@ static bool is_near_limits(const nav_ace_view_t *view,
 }
 
 /** Tightens bounds that refuse a pose, as long as what the last time has gained could be enough. */
-static void tighten_refused(const nav_ace_view_t *view,
-                            nav_ace_range_t *range,
-                            nav_spanned_t *spanned,
-                            nav_ace_bounds_t *bounds)
+static void tighten_refused(nav_ace_work_t *work, nav_ace_bounds_t *bounds)
 {
     gain_t gain = {FIRST_GAIN_M, FIRST_DROP_GAIN_M};
-    bool is_worth_it = is_near_limits(view, bounds, &gain);
+    bool is_worth_it = is_near_limits(&work->view, bounds, &gain);
     for (uint32_t k = 0U; (k < TIGHTENINGS) && is_worth_it; k++)
     {
         const double clearance_m = bounds->clearance_min_m;
         const double drop_m = bounds->wheel_drop_max_m;
-        tighten(view, range, spanned, bounds);
+        tighten(work, TIGHTEN_FROM_M[k], bounds);
         gain.clearance_m = nav_max(bounds->clearance_min_m - clearance_m, LEAST_GAIN_M);
         gain.drop_m = nav_max(drop_m - bounds->wheel_drop_max_m, LEAST_DROP_GAIN_M);
-        is_worth_it = is_near_limits(view, bounds, &gain);
+        is_worth_it = is_near_limits(&work->view, bounds, &gain);
     }
 }
 
@@ -711,13 +552,16 @@ static void tighten_refused(const nav_ace_view_t *view,
 static void bound_pose(nav_ace_work_t *work, nav_ace_bounds_t *bounds)
 {
     const nav_ace_view_t *view = &work->view;
-    nav_ace_range_t *range = &work->range;
-    nav_spanned_t *spanned = &work->spanned;
-    const finding_t finding = find_range(view, range, spanned, bounds);
+    finding_t finding = find_consistent(work, bounds);
+    if (((finding == STANDING) || (finding == CERTIFIED)) &&
+        !span_states(view, work->heights, &work->spanned))
+    {
+        finding = NOT_STANDING;
+    }
     if (finding == NOT_STANDING)
     {
         /* which wheels and why */
-        drop_bounds(view, range, bounds);
+        drop_bounds(view, &work->assumed, bounds);
         bounds->reason = (bounds->wheel_unknown < 1.0) ? (uint32_t) NAV_REASON_UNEXPECTED
                                                        : (uint32_t) NAV_REASON_UNKNOWN;
     }
@@ -728,10 +572,10 @@ static void bound_pose(nav_ace_work_t *work, nav_ace_bounds_t *bounds)
     }
     else
     {
-        bound_states(view, range, finding == CERTIFIED, spanned, bounds);
+        bound_states(view, &work->places, finding == CERTIFIED, &work->spanned, bounds);
         if (finding == CERTIFIED)
         {
-            tighten_refused(view, range, spanned, bounds);
+            tighten_refused(work, bounds);
         }
     }
 }

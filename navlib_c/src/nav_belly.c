@@ -42,8 +42,21 @@ typedef struct
     double spread_per_m;     /* how much the loss over all wheels can change with the place */
     double spread_per_above; /* and more of it per metre that ground stands off the plane */
     double off_plane;        /* all of that, with its place */
-    double free_reach_m;     /* how much clearance without spread changes within a costmap cell */
+    /* from the middle of a costmap cell to the furthest heightmap cell in it: */
+    double free_reach_m;   /* change of clearance without spread, */
+    double spread_reach_m; /* of the loss over all wheels, */
+    double tile_half_u_m;  /* and distances along the body's axes */
+    double tile_half_v_m;
 } belly_t;
+
+/** The middle of a costmap cell, from the pose and from the ROVER origin along the body. */
+typedef struct
+{
+    double north_m;
+    double east_m;
+    double u_m;
+    double v_m;
+} place_t;
 
 static double affine_at(const affine_t *affine, double north_m, double east_m, double above_m)
 {
@@ -136,6 +149,16 @@ static void place_spread(belly_t *belly)
          (per_u * fabs(belly->ground->rise_forward)) + (per_v * fabs(belly->ground->rise_right)));
 }
 
+/** How far numbers change within a costmap cell. */
+static void place_reach(belly_t *belly)
+{
+    const double half_m = MIDDLE * belly->ground->surface->cell_m;
+    belly->free_reach_m = half_m * (fabs(belly->free_m.per_north) + fabs(belly->free_m.per_east));
+    belly->spread_reach_m = belly->spread_per_m * 1.5 * half_m;
+    belly->tile_half_u_m = half_m * (fabs(belly->u_m.per_north) + fabs(belly->u_m.per_east));
+    belly->tile_half_v_m = half_m * (fabs(belly->v_m.per_north) + fabs(belly->v_m.per_east));
+}
+
 /** Does ground at a place seen from the body lie in the box along the body's axes? */
 static bool is_under(const belly_t *belly, double u_m, double v_m, double above_m)
 {
@@ -220,34 +243,6 @@ static uint32_t lower_by_cells(
     return unknown_count;
 }
 
-/** Can a costmap cell, with its middle at a place, hold ground under the belly? */
-static bool is_near(const belly_t *belly, const nav_box_t *feet, const nav_tile_t *patch)
-{
-    const double half_m = MIDDLE * belly->ground->surface->cell_m;
-    const double u_m = affine_at(&belly->u_m, patch->north_m, patch->east_m, 0.0);
-    const double v_m = affine_at(&belly->v_m, patch->north_m, patch->east_m, 0.0);
-    const double reach_u_m = half_m * (fabs(belly->u_m.per_north) + fabs(belly->u_m.per_east));
-    const double reach_v_m = half_m * (fabs(belly->v_m.per_north) + fabs(belly->v_m.per_east));
-    return (fabs(u_m - feet->u_m) <= (feet->half_u_m + reach_u_m)) &&
-           (fabs(v_m - feet->v_m) <= (feet->half_v_m + reach_v_m));
-}
-
-/** Largest spread of what stands off the plane in a costmap cell beyond that at the plane. */
-static double patch_off_m(const belly_t *belly, const nav_tile_t *patch)
-{
-    return belly->off_plane * nav_max(fabs(patch->above.low_m), fabs(patch->above.high_m));
-}
-
-/** Largest spread of what stands in a costmap cell. */
-static double patch_spread_m(const belly_t *belly, const nav_tile_t *patch)
-{
-    const double half_m = MIDDLE * belly->ground->surface->cell_m;
-    const double u_m = affine_at(&belly->u_m, patch->north_m, patch->east_m, 0.0);
-    const double v_m = affine_at(&belly->v_m, patch->north_m, patch->east_m, 0.0);
-    return spread_at_m(belly, u_m, v_m) + (belly->spread_per_m * 1.5 * half_m) +
-           patch_off_m(belly, patch);
-}
-
 /** Largest spread of all ground at the level of the plane in a box: it is convex, so that of a corner. */
 static double spread_over_m(const belly_t *belly, const nav_box_t *feet)
 {
@@ -258,14 +253,6 @@ static double spread_over_m(const belly_t *belly, const nav_box_t *feet)
     return nav_max(
         nav_max(spread_at_m(belly, front_m, left_m), spread_at_m(belly, front_m, right_m)),
         nav_max(spread_at_m(belly, rear_m, left_m), spread_at_m(belly, rear_m, right_m)));
-}
-
-/** Clearance that nothing in a costmap cell can fall below, spread aside. */
-static double patch_free_m(const belly_t *belly, const nav_tile_t *patch)
-{
-    const affine_t *free_m = &belly->free_m;
-    return affine_at(free_m, patch->north_m, patch->east_m, patch->above.high_m) -
-           belly->free_reach_m;
 }
 
 /** A costmap cell that the belly touches. */
@@ -311,30 +298,32 @@ static void take(const belly_t *belly, const under_t *cell, search_t *search)
 }
 
 /** Takes a costmap cell as a whole where it leaves enough, or else to be looked at. */
-static void touch(const belly_t *belly,
-                  const nav_box_t *feet,
-                  const nav_tile_t *patch,
-                  under_t *cell,
-                  search_t *search)
+static void touch(const belly_t *belly, under_t *cell, const place_t *place, search_t *search)
 {
-    if (is_near(belly, feet, patch))
+    const nav_tile_t tile =
+        nav_ground_tile(belly->ground, cell->row, cell->col, place->north_m, place->east_m);
+    /* what stands off the plane has more spread */
+    const double off_m =
+        belly->off_plane * nav_max(fabs(tile.above.low_m), fabs(tile.above.high_m));
+    const double free_m =
+        affine_at(&belly->free_m, place->north_m, place->east_m, tile.above.high_m) -
+        belly->free_reach_m;
+    const double left_m = free_m - (search->spread_m + off_m);
+    if (tile.is_whole && (left_m >= belly->enough_m))
     {
-        const double free_m = patch_free_m(belly, patch);
-        const double left_m = free_m - (search->spread_m + patch_off_m(belly, patch));
-        if (patch->is_whole && (left_m >= belly->enough_m))
-        {
-            search->least_m = nav_min(search->least_m, left_m);
-        }
-        else
-        {
-            cell->spread_m = patch->is_whole ? patch_spread_m(belly, patch) : NAV_ETA_NONE;
-            cell->free_m = patch->is_whole ? (free_m - cell->spread_m) : -NAV_ETA_NONE;
-            take(belly, cell, search);
-        }
+        search->least_m = nav_min(search->least_m, left_m);
+    }
+    else
+    {
+        const double spread_m =
+            spread_at_m(belly, place->u_m, place->v_m) + belly->spread_reach_m + off_m;
+        cell->spread_m = tile.is_whole ? spread_m : NAV_ETA_NONE;
+        cell->free_m = tile.is_whole ? (free_m - spread_m) : -NAV_ETA_NONE;
+        take(belly, cell, search);
     }
 }
 
-/** Finds the costmap cells that the belly touches. */
+/** Finds the costmap cells that the belly touches: that can hold ground under it. */
 static void find_touched(const belly_t *belly,
                          const nav_box_t *feet,
                          const nav_cost_box_t *cells,
@@ -347,11 +336,18 @@ static void find_touched(const belly_t *belly,
     search->best = 0U;
     for (int32_t row = cells->rows.first; row <= cells->rows.last; row++)
     {
+        place_t place = {.north_m = nav_ground_tile_north_m(belly->ground, row)};
         for (int32_t col = cells->cols.first; col <= cells->cols.last; col++)
         {
-            const nav_tile_t patch = nav_ground_tile(belly->ground, row, col);
-            under_t cell = {row, col, 0.0, 0.0};
-            touch(belly, feet, &patch, &cell, search);
+            place.east_m = nav_ground_tile_east_m(belly->ground, col);
+            place.u_m = affine_at(&belly->u_m, place.north_m, place.east_m, 0.0);
+            place.v_m = affine_at(&belly->v_m, place.north_m, place.east_m, 0.0);
+            if ((fabs(place.u_m - feet->u_m) <= (feet->half_u_m + belly->tile_half_u_m)) &&
+                (fabs(place.v_m - feet->v_m) <= (feet->half_v_m + belly->tile_half_v_m)))
+            {
+                under_t cell = {row, col, 0.0, 0.0};
+                touch(belly, &cell, &place, search);
+            }
         }
     }
 }
@@ -417,8 +413,7 @@ nav_clearance_t nav_belly_clearance(const nav_ground_t *ground,
     belly.off_plane =
         belly.spread_per_above +
         (belly.spread_per_m * nav_max(fabs(belly.u_m.per_above), fabs(belly.v_m.per_above)));
-    belly.free_reach_m = MIDDLE * ground->surface->cell_m *
-                         (fabs(belly.free_m.per_north) + fabs(belly.free_m.per_east));
+    place_reach(&belly);
     /* the same feet, seen from the pose */
     nav_box_t around = feet;
     around.u_m += lifted_m * ground->forward_up;

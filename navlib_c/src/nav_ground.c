@@ -104,6 +104,11 @@ bool nav_ground_place(nav_ground_t *ground,
         ground->col = (pose->y_m * ground->cells_per_m) - (double) surface->origin_col - 0.5;
         ground->cost_row = surface->origin_row - (costmap->origin_row * SIDE);
         ground->cost_col = surface->origin_col - (costmap->origin_col * SIDE);
+        ground->tile_side_m = (double) SIDE * surface->cell_m;
+        ground->tile_north_m =
+            ((MIDDLE - (double) ground->cost_row) - ground->row) * surface->cell_m;
+        ground->tile_east_m =
+            ((MIDDLE - (double) ground->cost_col) - ground->col) * surface->cell_m;
         place_lanes(ground);
     }
     return is_placed;
@@ -174,28 +179,34 @@ bool nav_ground_cost_box(const nav_ground_t *ground, const nav_box_t *box, nav_c
     return is_row_inside && is_col_inside;
 }
 
-nav_tile_t nav_ground_tile(const nav_ground_t *ground, int32_t cost_row, int32_t cost_col)
+double nav_ground_tile_north_m(const nav_ground_t *ground, int32_t cost_row)
+{
+    return ground->tile_north_m + (ground->tile_side_m * (double) cost_row);
+}
+
+double nav_ground_tile_east_m(const nav_ground_t *ground, int32_t cost_col)
+{
+    return ground->tile_east_m + (ground->tile_side_m * (double) cost_col);
+}
+
+nav_tile_t nav_ground_tile(
+    const nav_ground_t *ground, int32_t cost_row, int32_t cost_col, double north_m, double east_m)
 {
     const int32_t index = (cost_row * NAV_COSTMAP_SIZE) + cost_col;
     const nav_cost_cell_t *cell = &ground->costmap->cells[index];
     const nav_relief_cell_t *relief = &ground->relief->cells[index];
-    const double cell_m = ground->surface->cell_m;
-    const double row = (double) ((cost_row * SIDE) - ground->cost_row) + MIDDLE;
-    const double col = (double) ((cost_col * SIDE) - ground->cost_col) + MIDDLE;
-    nav_tile_t patch;
-    patch.north_m = (row - ground->row) * cell_m;
-    patch.east_m = (col - ground->col) * cell_m;
+    nav_tile_t tile;
     /* from its own plane to the one under the pose: at the middle, and how they diverge from there */
     const double between_m =
-        (ground->z_site_m + (ground->dz_dx * patch.north_m) + (ground->dz_dy * patch.east_m)) -
+        (ground->z_site_m + (ground->dz_dx * north_m) + (ground->dz_dy * east_m)) -
         (double) cell->plane_z_site_m;
-    const double apart_m = MIDDLE * cell_m *
+    const double apart_m = MIDDLE * ground->surface->cell_m *
                            (fabs(ground->dz_dx - (double) cell->plane_dz_dx) +
                             fabs(ground->dz_dy - (double) cell->plane_dz_dy));
-    patch.above.low_m = (between_m + (double) relief->below_m) - apart_m;
-    patch.above.high_m = between_m + (double) relief->above_m + apart_m;
-    patch.is_whole = relief->is_whole != 0U;
-    return patch;
+    tile.above.low_m = (between_m + (double) relief->below_m) - apart_m;
+    tile.above.high_m = between_m + (double) relief->above_m + apart_m;
+    tile.is_whole = relief->is_whole != 0U;
+    return tile;
 }
 
 bool nav_ground_range(const nav_ground_t *ground, const nav_box_t *box, nav_interval_t *above)
@@ -206,12 +217,14 @@ bool nav_ground_range(const nav_ground_t *ground, const nav_box_t *box, nav_inte
     above->high_m = -NAV_ETA_NONE;
     for (int32_t row = cells.rows.first; (row <= cells.rows.last) && is_whole; row++)
     {
+        const double north_m = nav_ground_tile_north_m(ground, row);
         for (int32_t col = cells.cols.first; (col <= cells.cols.last) && is_whole; col++)
         {
-            const nav_tile_t patch = nav_ground_tile(ground, row, col);
-            above->low_m = nav_min(above->low_m, patch.above.low_m);
-            above->high_m = nav_max(above->high_m, patch.above.high_m);
-            is_whole = patch.is_whole;
+            const nav_tile_t tile =
+                nav_ground_tile(ground, row, col, north_m, nav_ground_tile_east_m(ground, col));
+            above->low_m = nav_min(above->low_m, tile.above.low_m);
+            above->high_m = nav_max(above->high_m, tile.above.high_m);
+            is_whole = tile.is_whole;
         }
     }
     return is_whole && (above->high_m >= above->low_m);

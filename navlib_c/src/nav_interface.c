@@ -401,7 +401,6 @@ static void analyze(nav_ctx_t *ctx,
     nav_relief_update(&ctx->relief, &ctx->costmap, &ctx->costmap_state, &ctx->surface);
     nav_passage_update(&ctx->costmap, &ctx->costmap_state, &ctx->params, &ctx->footprint,
                        &ctx->relief, &ctx->surface);
-    nav_relief_rest(&ctx->relief, &ctx->surface, &ctx->surface_state, ctx->params.wheel_radius_m);
     ctx->is_analyzed = 1U;
 
     for (uint32_t k = 0U; k < (uint32_t) NAV_COSTMAP_CELLS; k++)

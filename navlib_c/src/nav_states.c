@@ -71,12 +71,27 @@ static void spread_states(const curvature_t *curvature,
     }
 }
 
+/** The state that has such heights, as if it were linear in them. */
+static void guess_state(const nav_vehicle_t *vehicle, nav_spanned_t *spanned)
+{
+    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
+    {
+        double state = 0.0;
+        for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
+        {
+            state += vehicle->flat_inverse[k][wheel] * spanned->wheel_middle_m[wheel];
+        }
+        spanned->linkage.state[k] = state;
+    }
+}
+
 bool nav_states_solve(const nav_vehicle_t *vehicle,
                       const nav_interval_t heights[NAV_WHEELS],
                       nav_spanned_t *spanned)
 {
     double widest_m = 0.0;
     take_heights(heights, spanned);
+    guess_state(vehicle, spanned);
     const bool is_solved =
         nav_vehicle_settle(vehicle, spanned->wheel_middle_m, SETTLE_TOLERANCE_M, &spanned->linkage);
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
@@ -111,15 +126,13 @@ bool nav_states_flat(const nav_vehicle_t *vehicle,
     if (is_flat)
     {
         take_heights(heights, spanned);
+        guess_state(vehicle, spanned);
         for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
         {
-            double state = 0.0;
             for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
             {
                 spanned->linkage.inverse[k][wheel] = vehicle->flat_inverse[k][wheel];
-                state += vehicle->flat_inverse[k][wheel] * spanned->wheel_middle_m[wheel];
             }
-            spanned->linkage.state[k] = state;
         }
         spread_states(&FLAT_CURVATURE, half_m * half_m, vehicle->hub_height_m, spanned);
     }

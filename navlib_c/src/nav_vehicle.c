@@ -291,6 +291,26 @@ static bool invert(double jacobian[NAV_WHEELS][NAV_LINKAGE_STATES],
     return is_regular;
 }
 
+/** How far a hub moves forward, per height of each wheel, on flat ground: what turns nose down about a
+ * pivot above moves back what hangs below. */
+static void forward_of_heights(nav_vehicle_t *vehicle, uint32_t wheel)
+{
+    const uint32_t side = wheel / WHEELS_PER_SIDE;
+    const bool is_front = (wheel % WHEELS_PER_SIDE) == FRONT;
+    const double per_pitch_m = -vehicle->hub_height_m;
+    const double per_rocker_m =
+        -rocker_sign(side) * (vehicle->rocker_pivot_height_m - vehicle->hub_height_m);
+    const double per_bogie_m =
+        is_front ? 0.0 : -(vehicle->bogie_pivot_height_m - vehicle->hub_height_m);
+    for (uint32_t k = 0U; k < (uint32_t) NAV_WHEELS; k++)
+    {
+        vehicle->forward_per_height[wheel][k] =
+            (per_pitch_m * vehicle->flat_inverse[NAV_LINKAGE_PITCH][k]) +
+            (per_rocker_m * vehicle->flat_inverse[NAV_LINKAGE_ROCKER][k]) +
+            (per_bogie_m * vehicle->flat_inverse[(uint32_t) NAV_LINKAGE_BOGIE_LEFT + side][k]);
+    }
+}
+
 void nav_vehicle_init(const nav_params_t *params, nav_vehicle_t *vehicle)
 {
     const double x_m[WHEELS_PER_SIDE] = {params->front_x_m, params->middle_x_m, params->rear_x_m};
@@ -313,6 +333,10 @@ void nav_vehicle_init(const nav_params_t *params, nav_vehicle_t *vehicle)
     vehicle->bogie_pivot_height_m = params->bogie_pivot_height_m;
     nav_vehicle_wheel_heights(vehicle, flat, height_m, jacobian);
     (void) invert(jacobian, vehicle->flat_inverse);
+    for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
+    {
+        forward_of_heights(vehicle, wheel);
+    }
 }
 
 /** Moves the state by what is missing of the wheel heights. */

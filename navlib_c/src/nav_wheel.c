@@ -190,8 +190,7 @@ typedef struct
 {
     int32_t first; /* line */
     uint32_t count;
-    double u_m[LINES_MAX];     /* foot of the middle, from that of the places */
-    double low_m[LINES_MAX];   /* lowest between the sides of the places */
+    line_t lines[LINES_MAX];   /* their feet are seen from the middle of the places */
     double under_m[LINES_MAX]; /* lowest cell that the sides touch on their way to the next line, */
     double over_m[LINES_MAX];  /* and highest */
 } profile_t;
@@ -204,6 +203,7 @@ typedef struct
     double radius_m;
     double half_minor; /* half width of the places along a line, in cells */
     double half_u_m;   /* and how far the heading's place moves along that */
+    double uphill_m;   /* how far ground is from its foot at most */
     int32_t aside;     /* cells by which a side can move on its way to the next line: 0 or 1 */
 } track_t;
 
@@ -214,19 +214,6 @@ typedef struct
     double eta_m;
 } touch_t;
 
-/** Height over the ground of a hub whose disc touches it at a distance fore or aft; 0: does not. */
-static double disc_m(double radius_m, double along_m)
-{
-    return sqrt(nav_max((radius_m * radius_m) - (along_m * along_m), 0.0));
-}
-
-static touch_t touch_at(const track_t *track, double foot_u_m, double above_m)
-{
-    const touch_t touch = {(foot_u_m + (above_m * track->ground->forward_up)) - track->places->u_m,
-                           above_m * track->ground->cos_slope};
-    return touch;
-}
-
 /** Ground between two points: straight but for a bulge, and nowhere higher than its highest cell. */
 typedef struct
 {
@@ -236,9 +223,32 @@ typedef struct
     double over_m;
 } stretch_t;
 
+/** Height over the ground of a hub whose disc touches it at a distance fore or aft; 0: does not. */
+static double disc_m(double radius_m, double along_m)
+{
+    return sqrt(nav_max((radius_m * radius_m) - (along_m * along_m), 0.0));
+}
+
+static touch_t touch_at(const track_t *track, double foot_u_m, double above_m)
+{
+    const touch_t touch = {foot_u_m + (above_m * track->ground->forward_up),
+                           above_m * track->ground->cos_slope};
+    return touch;
+}
+
+/** Raises the highest hub by one point of the ground. */
+static void raise_at(const track_t *track, double half_m, const touch_t *touch, double *high_m)
+{
+    const double along_m = nav_max(fabs(touch->u_m) - half_m, 0.0);
+    if (along_m <= track->radius_m)
+    {
+        *high_m = nav_max(*high_m, touch->eta_m + disc_m(track->radius_m, along_m));
+    }
+}
+
 /**
  * Raises the highest hub by a stretch of ground, over all places within half_m of the middle: by its
- * end, and by where the disc is parallel to it. Outside the places that is at
+ * ends, and by where the disc is parallel to it. Outside the places that is at
  * radius * slope / sqrt(1 + slope^2) from the nearest of them.
  */
 static void raise_along(const track_t *track,
@@ -252,12 +262,11 @@ static void raise_along(const track_t *track,
     const double first_m = nav_min(from->u_m, to->u_m);
     const double last_m = nav_max(from->u_m, to->u_m);
     const double near_m = nav_max(nav_max(first_m, -last_m) - half_m, 0.0);
-    const double to_along_m = nav_max(fabs(to->u_m) - half_m, 0.0);
-    if (to_along_m <= radius_m)
-    {
-        *high_m = nav_max(*high_m, to->eta_m + disc_m(radius_m, to_along_m));
-    }
-    if ((near_m < radius_m) && ((stretch->over_m + disc_m(radius_m, near_m)) > *high_m))
+    const double top_m =
+        nav_min(nav_max(from->eta_m, to->eta_m) + stretch->bulge_m, stretch->over_m);
+    raise_at(track, half_m, from, high_m);
+    raise_at(track, half_m, to, high_m);
+    if ((near_m < radius_m) && ((top_m + disc_m(radius_m, near_m)) > *high_m))
     {
         const double rise_m = to->eta_m - from->eta_m;
         const double slope =
@@ -277,52 +286,46 @@ static double above_at(const nav_lanes_t *lanes, const line_t *line, int32_t cel
            (double) line->z_site_m[cell * lanes->step_minor];
 }
 
-static double between(double from, double to, double part)
+/** How much the ground of a line rises from a cell to the next one. */
+static double rise_from(const nav_lanes_t *lanes, const line_t *line, int32_t cell)
 {
-    return from + (part * (to - from));
+    const float *z_site_m = &line->z_site_m[cell * lanes->step_minor];
+    return lanes->plane_minor_m - ((double) z_site_m[lanes->step_minor] - (double) *z_site_m);
 }
 
 /** Height above the plane where a line crosses a place between cells. */
 static double above_between(const nav_lanes_t *lanes, const line_t *line, double minor)
 {
     const int32_t cell = (int32_t) minor;
-    return between(above_at(lanes, line, cell), above_at(lanes, line, cell + 1),
-                   minor - (double) cell);
+    return above_at(lanes, line, cell) + ((minor - (double) cell) * rise_from(lanes, line, cell));
 }
 
 /** Adds a line to the profile. @return false when some of it is unknown or off the map */
-static bool add_line(const track_t *track, int32_t major, profile_t *profile)
+static bool add_line(const track_t *track, const line_t *line, profile_t *profile)
 {
     const nav_lanes_t *lanes = &track->ground->lanes;
-    const line_t line = line_of(track->ground, track->places, major);
-    const double left = line.minor - track->half_minor;
-    const double right = line.minor + track->half_minor;
+    const double left = line->minor - track->half_minor;
+    const double right = line->minor + track->half_minor;
     const uint32_t k = profile->count;
     bool is_known = (left >= 1.0) && (right < (double) (NAV_HEIGHTMAP_SIZE - 2));
     if (is_known)
     {
-        const int32_t first = (int32_t) left;
-        const int32_t last = (int32_t) right + 1;
-        const int32_t end = last + track->aside;
-        const int32_t start = first - track->aside;
-        const float *z_site_m = &line.z_site_m[start * lanes->step_minor];
-        double plane_m = line.plane_m + (lanes->plane_minor_m * (double) start);
-        double low_m =
-            nav_min(above_between(lanes, &line, left), above_between(lanes, &line, right));
+        const int32_t start = (int32_t) left - track->aside;
+        const int32_t cell_count = ((((int32_t) right + 1) + track->aside) - start) + 1;
+        const float *z_site_m = &line->z_site_m[start * lanes->step_minor];
+        double plane_m = line->plane_m + (lanes->plane_minor_m * (double) start);
         double under_m = NAV_ETA_NONE;
         double over_m = -NAV_ETA_NONE;
-        for (int32_t cell = start; cell <= end; cell++)
+        for (int32_t cell = 0; cell < cell_count; cell++)
         {
             const double above_m = plane_m - (double) *z_site_m;
             under_m = nav_min(under_m, above_m);
             over_m = nav_max(over_m, above_m);
-            low_m = ((cell > first) && (cell < last)) ? nav_min(low_m, above_m) : low_m;
             plane_m += lanes->plane_minor_m;
             z_site_m = &z_site_m[lanes->step_minor];
         }
         is_known = under_m > NOTHING;
-        profile->u_m[k] = line.u_m - track->places->u_m;
-        profile->low_m[k] = low_m;
+        profile->lines[k] = *line;
         profile->under_m[k] = under_m;
         profile->over_m[k] = over_m;
     }
@@ -332,95 +335,60 @@ static bool add_line(const track_t *track, int32_t major, profile_t *profile)
 /** Takes the ground of every line that a wheel could touch: one stretch of known lines without a gap. */
 static void take_lines(const track_t *track, const nav_indices_t *majors, profile_t *profile)
 {
+    const nav_lanes_t *lanes = &track->ground->lanes;
+    line_t line = line_of(track->ground, track->places, majors->first);
     bool is_over = false;
     profile->count = 0U;
-    profile->first = majors->first;
+    line.u_m -= track->places->u_m;
     for (int32_t major = majors->first; (major <= majors->last) && !is_over; major++)
     {
-        if (add_line(track, major, profile))
+        if (add_line(track, &line, profile))
         {
             profile->count++;
         }
-        else if (profile->count == 0U)
-        {
-            profile->first = major + 1;
-        }
         else
         {
-            is_over = true;
+            is_over = profile->count > 0U;
         }
+        line.z_site_m = &line.z_site_m[lanes->step_major];
+        line.plane_m += lanes->plane_major_m;
+        line.minor += lanes->minor_per_major;
+        line.u_m += lanes->u_per_major;
     }
 }
 
-/** Where a side of the places goes through one cell of the surface, between two lines. */
-typedef struct
-{
-    uint32_t side;
-    int32_t cell;
-    double parts[2]; /* where it enters and leaves: 0 on the first line, 1 on the second */
-    double reach_m;  /* height over the ground of a hub that touches it there, at most */
-} crossing_t;
-
-/** Raises the highest hub by the ground along one side of the places within one cell of the surface:
- * a parabola, for the surface is bilinear. */
-static void raise_in_cell(const track_t *track,
-                          const line_t lines[2],
-                          const crossing_t *crossing,
-                          double *high_m)
-{
-    const nav_ground_t *ground = track->ground;
-    const nav_lanes_t *lanes = &ground->lanes;
-    const double aside = (crossing->side == 0U) ? -track->half_minor : track->half_minor;
-    const double near_0_m = above_at(lanes, &lines[0], crossing->cell);
-    const double next_0_m = above_at(lanes, &lines[0], crossing->cell + 1);
-    const double near_1_m = above_at(lanes, &lines[1], crossing->cell);
-    const double next_1_m = above_at(lanes, &lines[1], crossing->cell + 1);
-    const double over_m = nav_max(nav_max(near_0_m, next_0_m), nav_max(near_1_m, next_1_m));
-    const double twist_m = (next_1_m - near_1_m) - (next_0_m - near_0_m);
-    const double length = crossing->parts[1] - crossing->parts[0];
-    const double bulge_m =
-        nav_max(-0.25 * lanes->minor_per_major * twist_m * length * length, 0.0) *
-        ground->cos_slope;
-    stretch_t stretch = {.bulge_m = bulge_m, .over_m = over_m * ground->cos_slope};
-    touch_t *ends[2] = {&stretch.from, &stretch.to};
-
-    if ((stretch.over_m + crossing->reach_m) > *high_m)
-    {
-        for (uint32_t end = 0U; end < 2U; end++)
-        {
-            const double part = crossing->parts[end];
-            const double off = (lines[0].minor + aside + (part * lanes->minor_per_major)) -
-                               (double) crossing->cell;
-            const double above_m =
-                between(between(near_0_m, next_0_m, off), between(near_1_m, next_1_m, off), part);
-            *ends[end] = touch_at(
-                track, lines[0].u_m + (aside * lanes->u_per_minor) + (part * lanes->u_per_major),
-                above_m);
-        }
-        raise_along(track, track->places->half_u_m, &stretch, high_m);
-    }
-}
-
-/** Raises the highest hub by the ground along one side of the places, from one line to the next; on
- * its way the side can cross from one cell to the next. */
+/**
+ * Raises the highest hub by the ground along one side of the places, from one line to the next. There
+ * the surface is a mean of what the two lines hold where the side is: as it moves along them, either
+ * rises by no more than its steepest cell. The mean of both, over the way, is a parabola.
+ */
 static void raise_along_side(
-    const track_t *track, const line_t lines[2], double reach_m, uint32_t side, double *high_m)
+    const track_t *track, const line_t lines[2], double aside, double over_m, double *high_m)
 {
-    const double aside = (side == 0U) ? -track->half_minor : track->half_minor;
-    const int32_t from = (int32_t) (lines[0].minor + aside);
-    const int32_t to = (int32_t) (lines[1].minor + aside);
-    crossing_t crossing = {side, from, {0.0, 1.0}, reach_m};
-    if (from != to)
+    const nav_lanes_t *lanes = &track->ground->lanes;
+    const double drift = lanes->minor_per_major;
+    const double aside_u_m = aside * lanes->u_per_minor;
+    const int32_t cells[2] = {(int32_t) (lines[0].minor + aside),
+                              (int32_t) (lines[1].minor + aside)};
+    double gain_m = 0.0;
+    for (uint32_t k = 0U; k < 2U; k++)
     {
-        const int32_t border = (from < to) ? to : from;
-        crossing.parts[1] =
-            ((double) border - (lines[0].minor + aside)) / track->ground->lanes.minor_per_major;
-        raise_in_cell(track, lines, &crossing, high_m);
-        crossing.cell = to;
-        crossing.parts[0] = crossing.parts[1];
-        crossing.parts[1] = 1.0;
+        const double toward = (k == 0U) ? drift : -drift;
+        gain_m += nav_max(toward * rise_from(lanes, &lines[k], cells[0]),
+                          toward * rise_from(lanes, &lines[k], cells[1]));
     }
-    raise_in_cell(track, lines, &crossing, high_m);
+    const stretch_t stretch = {
+        touch_at(track, lines[0].u_m + aside_u_m,
+                 above_between(lanes, &lines[0], lines[0].minor + aside)),
+        touch_at(track, lines[1].u_m + aside_u_m,
+                 above_between(lanes, &lines[1], lines[1].minor + aside)),
+        0.25 * nav_max(gain_m, 0.0) * track->ground->cos_slope,
+        over_m,
+    };
+    /* on a slope the bulge stands uphill of its foot */
+    raise_along(track,
+                track->places->half_u_m + (stretch.bulge_m * fabs(track->ground->rise_forward)),
+                &stretch, high_m);
 }
 
 /** The highest ground of a line between the sides of the places. */
@@ -450,128 +418,135 @@ static void raise_along_inner(const track_t *track, const line_t lines[2], doubl
     if (has_inner(track, &lines[0]) || has_inner(track, &lines[1]))
     {
         const double half_m = track->places->half_u_m + track->half_u_m;
-        stretch_t stretch = {.from = touch_at(track, lines[0].u_m, inner_high_m(track, &lines[0])),
-                             .to = touch_at(track, lines[1].u_m, inner_high_m(track, &lines[1]))};
-        const touch_t first = stretch.from;
-        stretch.over_m = nav_max(first.eta_m, stretch.to.eta_m);
-        raise_along(track, half_m, &stretch, high_m);
-        stretch.from = stretch.to;
-        stretch.to = first;
+        const stretch_t stretch = {
+            touch_at(track, lines[0].u_m, inner_high_m(track, &lines[0])),
+            touch_at(track, lines[1].u_m, inner_high_m(track, &lines[1])),
+            0.0,
+            NAV_ETA_NONE,
+        };
         raise_along(track, half_m, &stretch, high_m);
     }
 }
 
-/** How high a hub can be over ground that it touches between a line and the next. */
-static double reach_between_m(const track_t *track, const profile_t *profile, uint32_t k)
+/** Raises the highest hub by the ground from a line to the next, if that can be. */
+static void raise_between(const track_t *track,
+                          const profile_t *profile,
+                          uint32_t k,
+                          double *high_m)
 {
-    const double over_m = nav_max(profile->over_m[k], profile->over_m[k + 1U]);
-    const double under_m = nav_min(profile->under_m[k], profile->under_m[k + 1U]);
-    const double uphill_m = fabs(track->ground->forward_up) * nav_max(fabs(over_m), fabs(under_m));
-    const double u_0_m = profile->u_m[k];
-    const double u_1_m = profile->u_m[k + 1U];
-    const double near_m = ((u_0_m * u_1_m) <= 0.0) ? 0.0 : nav_min(fabs(u_0_m), fabs(u_1_m));
-    const double along_m =
-        nav_max(near_m - (track->places->half_u_m + track->half_u_m + uphill_m), 0.0);
-    return disc_m(track->radius_m, along_m);
+    const line_t *lines = &profile->lines[k];
+    const double over_m =
+        nav_max(profile->over_m[k], profile->over_m[k + 1U]) * track->ground->cos_slope;
+    /* no reach is longer than the radius */
+    if ((over_m + track->radius_m) > *high_m)
+    {
+        const double between_m = nav_max(
+            nav_max(nav_min(lines[0].u_m, lines[1].u_m), -nav_max(lines[0].u_m, lines[1].u_m)),
+            0.0);
+        const double along_m =
+            nav_max(between_m - (track->places->half_u_m + track->half_u_m + track->uphill_m), 0.0);
+        if ((over_m + disc_m(track->radius_m, along_m)) > *high_m)
+        {
+            raise_along_side(track, lines, -track->half_minor, over_m, high_m);
+            raise_along_side(track, lines, track->half_minor, over_m, high_m);
+            raise_along_inner(track, lines, high_m);
+        }
+    }
 }
 
-/** No ground that a wheel can touch between a line and the next is higher. */
-static double over_between_m(const track_t *track, const profile_t *profile, uint32_t k)
-{
-    return nav_max(profile->over_m[k], profile->over_m[k + 1U]) * track->ground->cos_slope;
-}
-
-/** Raises the highest hub by the ground between a line and the next. */
-static void raise_between(const track_t *track, int32_t major, double reach_m, double *high_m)
-{
-    const line_t lines[2] = {line_of(track->ground, track->places, major),
-                             line_of(track->ground, track->places, major + 1)};
-    raise_along_side(track, lines, reach_m, 0U, high_m);
-    raise_along_side(track, lines, reach_m, 1U, high_m);
-    raise_along_inner(track, lines, high_m);
-}
-
-/** Highest hub over all places: looks closely first where the hub could be highest. */
+/** Highest hub over all places: looks first where its middle is. */
 static double hub_high_m(const track_t *track, const profile_t *profile)
 {
+    const uint32_t middle = profile->count / 2U;
     double high_m = -NAV_ETA_NONE;
-    double ceiling_max_m = -NAV_ETA_NONE;
-    double best_reach_m = 0.0;
-    uint32_t best = 0U;
-    for (uint32_t k = 0U; (k + 1U) < profile->count; k++)
+    for (uint32_t k = middle; (k + 1U) < profile->count; k++)
     {
-        const double reach_m = reach_between_m(track, profile, k);
-        const double ceiling_m = over_between_m(track, profile, k) + reach_m;
-        best = (ceiling_m > ceiling_max_m) ? k : best;
-        best_reach_m = (ceiling_m > ceiling_max_m) ? reach_m : best_reach_m;
-        ceiling_max_m = nav_max(ceiling_max_m, ceiling_m);
+        raise_between(track, profile, k, &high_m);
     }
-    if (profile->count > 1U)
+    for (uint32_t k = middle; k > 0U; k--)
     {
-        raise_between(track, profile->first + (int32_t) best, best_reach_m, &high_m);
-    }
-    for (uint32_t k = 0U; (k + 1U) < profile->count; k++)
-    {
-        const double over_m = over_between_m(track, profile, k);
-        /* no reach is longer than the radius */
-        if ((k != best) && ((over_m + track->radius_m) > high_m))
-        {
-            const double reach_m = reach_between_m(track, profile, k);
-            if ((over_m + reach_m) > high_m)
-            {
-                raise_between(track, profile->first + (int32_t) k, reach_m, &high_m);
-            }
-        }
+        raise_between(track, profile, k - 1U, &high_m);
     }
     return high_m;
 }
 
-/** Where the ground of a line is from the middle of the places, at its lowest. */
-static double low_u_m(const track_t *track, const profile_t *profile, uint32_t k)
+/** Lines near the places, for the lowest hub. */
+typedef struct
 {
-    return profile->u_m[k] + (profile->low_m[k] * track->ground->forward_up);
+    const profile_t *profile;
+    uint32_t first;
+    uint32_t last;
+    touch_t low[LINES_MAX]; /* of each of them: the lowest ground between the sides */
+} floor_t;
+
+/** Lowest ground of a line between the sides, and where it is. */
+static touch_t low_of(const track_t *track, const line_t *line)
+{
+    const nav_lanes_t *lanes = &track->ground->lanes;
+    const double left = line->minor - track->half_minor;
+    const double right = line->minor + track->half_minor;
+    double low_m = nav_min(above_between(lanes, line, left), above_between(lanes, line, right));
+    for (int32_t cell = (int32_t) left + 1; cell <= (int32_t) right; cell++)
+    {
+        low_m = nav_min(low_m, above_at(lanes, line, cell));
+    }
+    return touch_at(track, line->u_m, low_m);
+}
+
+/** Takes the lines within a distance of the places, or the nearest one. */
+static void take_floor(const track_t *track, double near_m, floor_t *floor_)
+{
+    const profile_t *profile = floor_->profile;
+    floor_->first = profile->count;
+    floor_->last = 0U;
+    for (uint32_t k = 0U; k < profile->count; k++)
+    {
+        if (fabs(profile->lines[k].u_m) <= near_m)
+        {
+            floor_->first = (k < floor_->first) ? k : floor_->first;
+            floor_->last = k;
+            floor_->low[k] = low_of(track, &profile->lines[k]);
+        }
+    }
 }
 
 /** Lowest ground that a hub within reach_m of u_m can be over: of all stretches from line to line that
  * lie there, leaning as slopes make them. */
-static double under_hub_m(const track_t *track,
-                          const profile_t *profile,
-                          double u_m,
-                          double reach_m)
+static double under_hub_m(const track_t *track, const floor_t *floor_, double u_m, double reach_m)
 {
+    const profile_t *profile = floor_->profile;
     const double lean = fabs(track->ground->forward_up);
     double under_m = NAV_ETA_NONE;
-    double from_m = low_u_m(track, profile, 0U);
-    for (uint32_t k = 0U; (k + 1U) < profile->count; k++)
+    for (uint32_t k = floor_->first; k < floor_->last; k++)
     {
+        const double from_m = floor_->low[k].u_m;
+        const double to_m = floor_->low[k + 1U].u_m;
         const double stretch_m = nav_min(profile->under_m[k], profile->under_m[k + 1U]);
         const double over_m = nav_max(profile->over_m[k], profile->over_m[k + 1U]);
         const double near_m = reach_m + ((over_m - stretch_m) * lean);
-        const double to_m = low_u_m(track, profile, k + 1U);
         if (((nav_min(from_m, to_m) - near_m) <= u_m) && (u_m <= (nav_max(from_m, to_m) + near_m)))
         {
             under_m = nav_min(under_m, stretch_m);
         }
-        from_m = to_m;
     }
     return (under_m < NAV_ETA_NONE) ? (under_m * track->ground->cos_slope) : -NAV_ETA_NONE;
 }
 
 /** Lowest hub over a part of the places around u_m: on whatever line it stands highest at least, and
  * not below the ground under its middle. */
-static double part_low_m(const track_t *track, const profile_t *profile, double u_m, double half_m)
+static double part_low_m(const track_t *track, const floor_t *floor_, double u_m, double half_m)
 {
     const double reach_m = half_m + track->half_u_m;
     const double radius_m = track->radius_m;
-    double standing_m = under_hub_m(track, profile, u_m, reach_m) + radius_m;
-    for (uint32_t k = 0U; k < profile->count; k++)
+    double standing_m = under_hub_m(track, floor_, u_m, reach_m) + radius_m;
+    for (uint32_t k = floor_->first; k <= floor_->last; k++)
     {
-        const double along_m = fabs(low_u_m(track, profile, k) - u_m) + reach_m;
-        const double eta_m = profile->low_m[k] * track->ground->cos_slope;
+        const touch_t *low = &floor_->low[k];
+        const double along_m = fabs(low->u_m - u_m) + reach_m;
         /* no higher than straight above it */
-        if ((along_m < radius_m) && ((eta_m + radius_m) > standing_m))
+        if ((along_m < radius_m) && ((low->eta_m + radius_m) > standing_m))
         {
-            standing_m = nav_max(standing_m, eta_m + disc_m(radius_m, along_m));
+            standing_m = nav_max(standing_m, low->eta_m + disc_m(radius_m, along_m));
         }
     }
     return standing_m - radius_m;
@@ -583,11 +558,15 @@ static double hub_low_m(const track_t *track, const profile_t *profile)
     const nav_box_t *places = track->places;
     const uint32_t part_count = 1U + (uint32_t) (places->half_u_m / PART_HALF_M);
     const double half_m = places->half_u_m / (double) part_count;
+    const double spacing_m = fabs(track->ground->lanes.u_per_major);
+    floor_t floor_ = {.profile = profile};
     double low_m = NAV_ETA_NONE;
+    take_floor(track, places->half_u_m + track->half_u_m + (2.0 * track->uphill_m) + spacing_m,
+               &floor_);
     for (uint32_t part = 0U; part < part_count; part++)
     {
         const double u_m = (half_m * (double) ((2U * part) + 1U)) - places->half_u_m;
-        low_m = nav_min(low_m, part_low_m(track, profile, u_m, half_m));
+        low_m = nav_min(low_m, part_low_m(track, &floor_, u_m, half_m));
     }
     return low_m;
 }
@@ -598,10 +577,7 @@ static double touch_reach_m(const nav_ground_t *ground,
                             double radius_m)
 {
     const double span_m = nav_min((above->high_m - above->low_m) * ground->cos_slope, radius_m);
-    const double left_m = radius_m - span_m;
-    const double uphill_m =
-        fabs(ground->forward_up) * nav_max(fabs(above->low_m), fabs(above->high_m));
-    return disc_m(radius_m, left_m) + uphill_m;
+    return disc_m(radius_m, radius_m - span_m);
 }
 
 nav_interval_t nav_wheel_interval(const nav_ground_t *ground,
@@ -611,17 +587,21 @@ nav_interval_t nav_wheel_interval(const nav_ground_t *ground,
 {
     const nav_lanes_t *lanes = &ground->lanes;
     const double half_minor = places->half_v_m * fabs(lanes->minor_across);
-    const track_t track = {ground,
-                           places,
-                           radius_m,
-                           half_minor,
-                           half_minor * fabs(lanes->u_per_minor),
-                           (fabs(lanes->minor_per_major) > PARALLEL) ? 1 : 0};
+    const track_t track = {
+        ground,
+        places,
+        radius_m,
+        half_minor,
+        half_minor * fabs(lanes->u_per_minor),
+        fabs(ground->forward_up) * nav_max(fabs(above->low_m), fabs(above->high_m)),
+        (fabs(lanes->minor_per_major) > PARALLEL) ? 1 : 0,
+    };
     profile_t profile;
 
     /* and one line more on either side: what is touched can lie between two */
-    nav_indices_t majors = lines_across(
-        lanes, places, touch_reach_m(ground, above, radius_m) + fabs(lanes->u_per_major));
+    nav_indices_t majors = lines_across(lanes, places,
+                                        touch_reach_m(ground, above, radius_m) + track.uphill_m +
+                                            fabs(lanes->u_per_major));
     (void) cut_to_map(&majors);
     nav_interval_t hub = {above->low_m * ground->cos_slope, above->high_m * ground->cos_slope};
     if ((majors.last - majors.first) < (int32_t) LINES_MAX)

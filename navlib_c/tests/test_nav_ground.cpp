@@ -223,7 +223,10 @@ TEST(Ground, costmap_cells_that_stick_out_of_the_surface_are_not_given)
     ASSERT_TRUE(nav_ground_cost_box(&ground, &middle, &cells));
     for (int32_t row = cells.rows.first; row <= cells.rows.last; row++)
     {
-        EXPECT_TRUE(nav_ground_tile(&ground, row, cells.cols.first).is_whole);
+        EXPECT_TRUE(nav_ground_tile(&ground, row, cells.cols.first,
+                                    nav_ground_tile_north_m(&ground, row),
+                                    nav_ground_tile_east_m(&ground, cells.cols.first))
+                        .is_whole);
     }
 }
 

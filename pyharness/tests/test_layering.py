@@ -25,7 +25,7 @@ LEVELS = [
     ["nav_relief"],
     ["nav_passage", "nav_ground"],
     ["nav_global"],
-    ["nav_wheel", "nav_rough", "nav_states"],
+    ["nav_wheel", "nav_rough", "nav_states", "nav_places"],
     ["nav_belly"],
     ["nav_ace"],
     ["nav_tree"],
