@@ -23,10 +23,8 @@
 /* Time of the oldest height where there is none: it does not expire. */
 #define NAV_TIME_NEVER_S 1.0e300
 
-/* Not a place on the map. */
-#define NAV_OUTSIDE (-1)
-
-_Static_assert(NAV_BLOCKS_SIDE <= 256, "list_blocks() has a byte for each block");
+/* Where rows and columns outside the map begin: too low for any sum of a row's and a column's. */
+#define NAV_OUTSIDE (-NAV_SIZE * NAV_SIZE)
 
 /* A coordinate of a point is linear in its coordinates in ROVER. */
 typedef struct
@@ -60,9 +58,8 @@ typedef struct
     double x_m[NAV_BATCH]; /* ROVER */
     double y_m[NAV_BATCH];
     double z_m[NAV_BATCH];
-    double place[NAV_BATCH]; /* cells from the map's corner along one axis */
     double down_m[NAV_BATCH];
-    int32_t row[NAV_BATCH]; /* of storage, or NAV_OUTSIDE */
+    int32_t row[NAV_BATCH]; /* from the map's corner; NAV_SIZE outside */
     int32_t col[NAV_BATCH];
 } nav_batch_t;
 
@@ -125,12 +122,35 @@ static void spread(nav_batch_t *batch, const nav_point_t *points, uint32_t count
     }
 }
 
-static void place_along(const nav_batch_t *batch, const nav_direction_t *to, double *place)
+static double along(const nav_batch_t *batch, const nav_direction_t *to, uint32_t point)
 {
+    return ((to->x * batch->x_m[point]) + (to->y * batch->y_m[point])) +
+           ((to->z * batch->z_m[point]) + to->offset);
+}
+
+/* Rows or columns of the map, from its corner. */
+static void find_cells(const nav_batch_t *batch, const nav_direction_t *to, int32_t *index)
+{
+    const double outside = (double) NAV_HEIGHTMAP_SIZE;
+
     for (uint32_t point = 0U; point < NAV_BATCH; point++)
     {
-        place[point] = ((to->x * batch->x_m[point]) + (to->y * batch->y_m[point])) +
-                       ((to->z * batch->z_m[point]) + to->offset);
+        const double place = along(batch, to, point);
+        const double from_low = (place >= 0.0) ? place : outside;
+        const double limited = (from_low < outside) ? from_low : outside;
+
+        /* not negative: truncation is floor() */
+        index[point] = (int32_t) limited;
+    }
+}
+
+static void place_points(nav_batch_t *batch, const nav_placing_t *placing)
+{
+    find_cells(batch, &placing->row, batch->row);
+    find_cells(batch, &placing->col, batch->col);
+    for (uint32_t point = 0U; point < NAV_BATCH; point++)
+    {
+        batch->down_m[point] = along(batch, &placing->down, point);
     }
 }
 
@@ -139,29 +159,19 @@ static int32_t wrap_once(int32_t index, int32_t size)
     return (index >= size) ? (index - size) : index;
 }
 
-static void store_along(const double *place, int32_t first, int32_t *stored)
-{
-    for (uint32_t point = 0U; point < NAV_BATCH; point++)
-    {
-        const double from_low = (place[point] >= 0.0) ? place[point] : (double) NAV_OUTSIDE;
-        const double inside =
-            (from_low < (double) NAV_HEIGHTMAP_SIZE) ? from_low : (double) NAV_OUTSIDE;
-        /* not negative on the map: truncation is floor() */
-        const int32_t index = (int32_t) inside;
-
-        stored[point] = (index >= 0) ? wrap_once(index + first, NAV_SIZE) : NAV_OUTSIDE;
-    }
-}
-
-/* For each place of storage along an axis, where its block stands in tables. */
-static void list_blocks(const nav_axis_t *axis, uint8_t *block_of_stored)
+/* Lists where rows or columns begin in storage, given what lies between two of them there. */
+static void list_lines(const nav_axis_t *axis,
+                       int32_t cell_step,
+                       int32_t block_step,
+                       nav_line_t lines[NAV_HEIGHTMAP_SIZE + 1])
 {
     int32_t in_block = axis->in_block;
     int32_t block = axis->first_block;
 
     for (int32_t index = 0; index < NAV_SIZE; index++)
     {
-        block_of_stored[wrap_once(axis->first + index, NAV_SIZE)] = (uint8_t) block;
+        lines[index].cell = wrap_once(axis->first + index, NAV_SIZE) * cell_step;
+        lines[index].block = block * block_step;
         in_block += 1;
         if (in_block == NAV_BLOCK)
         {
@@ -169,23 +179,16 @@ static void list_blocks(const nav_axis_t *axis, uint8_t *block_of_stored)
             block = wrap_once(block + 1, NAV_SIDE);
         }
     }
+    lines[NAV_SIZE].cell = NAV_OUTSIDE;
+    lines[NAV_SIZE].block = 0;
 }
 
-static void place_points(nav_batch_t *batch, const nav_placing_t *placing)
+/* 1 when two numbers are equal, 0 otherwise; not a comparison, which may become a branch. */
+static uint32_t are_equal(uint32_t a, uint32_t b)
 {
-    place_along(batch, &placing->row, batch->place);
-    store_along(batch->place, placing->rows.first, batch->row);
-    place_along(batch, &placing->col, batch->place);
-    store_along(batch->place, placing->cols.first, batch->col);
-    place_along(batch, &placing->down, batch->down_m);
-}
+    const uint64_t difference = (uint64_t) a ^ (uint64_t) b;
 
-/* All bits when two numbers are equal, none otherwise. */
-static uint32_t mask_of_equal(uint32_t a, uint32_t b)
-{
-    const uint32_t difference = a ^ b;
-
-    return ((difference | (0U - difference)) >> 31U) - 1U;
+    return (uint32_t) ((difference - 1U) >> 63U);
 }
 
 /*
@@ -194,13 +197,14 @@ static uint32_t mask_of_equal(uint32_t a, uint32_t b)
  */
 static uint32_t add_to_cell(nav_height_cell_t *cell, double z_m, double time_s, uint32_t image_id)
 {
-    const uint32_t mask = mask_of_equal(cell->image_id, image_id);
-    const uint32_t count = mask & cell->point_count;
+    static const double kept[2] = {0.0, 1.0}; /* of the sum of another image, of this one */
+    const uint32_t is_same = are_equal(cell->image_id, image_id);
+    const uint32_t count = (0U - is_same) & cell->point_count;
     const bool is_taken = count < NAV_CELL_POINTS_MAX;
 
     if (is_taken)
     {
-        cell->z_sum_m = ((double) (mask & 1U) * cell->z_sum_m) + z_m;
+        cell->z_sum_m = (kept[is_same] * cell->z_sum_m) + z_m;
         cell->time_s = time_s;
         cell->image_id = image_id;
         cell->point_count = count + 1U;
@@ -614,11 +618,9 @@ nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
     const uint32_t total = (point_count < capacity) ? point_count : capacity;
     nav_merge_t merge = {0U, 0U};
     nav_batch_t batch;
-    uint8_t block_row[NAV_HEIGHTMAP_SIZE];
-    uint8_t block_col[NAV_HEIGHTMAP_SIZE];
 
-    list_blocks(&placing.rows, block_row);
-    list_blocks(&placing.cols, block_col);
+    list_lines(&placing.rows, NAV_SIZE, NAV_SIDE, map->rows);
+    list_lines(&placing.cols, 1, 1, map->cols);
     (void) memset(&batch, 0, sizeof(batch)); /* what no point fills is placed as well */
     for (uint32_t first = 0U; first < total; first += NAV_BATCH)
     {
@@ -629,19 +631,19 @@ nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
         place_points(&batch, &placing);
         for (uint32_t point = 0U; point < count; point++)
         {
-            const int32_t row = batch.row[point];
-            const int32_t col = batch.col[point];
+            const nav_line_t *row = &map->rows[batch.row[point]];
+            const nav_line_t *col = &map->cols[batch.col[point]];
+            const int32_t cell = row->cell + col->cell;
 
-            if ((row == NAV_OUTSIDE) || (col == NAV_OUTSIDE))
+            if (cell < 0)
             {
                 merge.outside_count += 1U;
             }
             else
             {
-                map->is_changed[((int32_t) block_row[row] * NAV_SIDE) + (int32_t) block_col[col]] =
-                    1U;
-                merge.merged_count += add_to_cell(&map->cells[(row * NAV_SIZE) + col],
-                                                  batch.down_m[point], time_s, image_id);
+                map->is_changed[row->block + col->block] = 1U;
+                merge.merged_count +=
+                    add_to_cell(&map->cells[cell], batch.down_m[point], time_s, image_id);
             }
         }
     }
