@@ -63,12 +63,25 @@ typedef struct
     int32_t col[NAV_BATCH];
 } nav_batch_t;
 
-/* Known heights of three cells, one above the other. */
+/* Cells of a row whose gaps are closed in one go, and those that takes: one more at either end. */
+#define NAV_FILLED 20
+#define NAV_FILLED_FROM (NAV_FILLED + 2)
+
+_Static_assert(NAV_HEIGHTMAP_SIZE >= NAV_FILLED, "cells filled in one go lie on the map");
+
+/* Part of a row before gaps are closed. */
 typedef struct
 {
-    double z_sum_m;
-    double known_count;
-} nav_column_t;
+    float z_m[NAV_FILLED_FROM];      /* 0 where unknown */
+    float is_known[NAV_FILLED_FROM]; /* 1 or 0 */
+} nav_known_t;
+
+/* Of the known heights among each cell and its neighbours. */
+typedef struct
+{
+    float mean_m[NAV_FILLED]; /* 0 when there are none */
+    float known_count[NAV_FILLED];
+} nav_means_t;
 
 static nav_direction_t scaled(double scale, double x, double y, double z, double offset)
 {
@@ -310,7 +323,7 @@ static float height_of_cell(const nav_height_cell_t *cell, double time_s, double
     return z_m;
 }
 
-/* Cells of a block that lie on the map, as its rows and columns from the corner. */
+/* Cells of blocks that lie on the map, as its rows and columns from the corner. */
 typedef struct
 {
     int32_t row;
@@ -326,16 +339,18 @@ static int32_t clipped(int32_t place)
     return (from_low < NAV_SIZE) ? from_low : NAV_SIZE;
 }
 
-/* Of a block given by its place from that of the map's corner. */
-static nav_patch_t patch_of_block(const nav_axis_t *rows,
-                                  const nav_axis_t *cols,
-                                  int32_t block_row,
-                                  int32_t block_col)
+/* Of blocks side by side, given by their places from that of the map's corner. */
+static nav_patch_t patch_of_blocks(const nav_axis_t *rows,
+                                   const nav_axis_t *cols,
+                                   int32_t block_row,
+                                   int32_t block_col,
+                                   int32_t block_col_end)
 {
     const int32_t row = (block_row * NAV_BLOCK) - rows->in_block;
     const int32_t col = (block_col * NAV_BLOCK) - cols->in_block;
+    const int32_t col_end = (block_col_end * NAV_BLOCK) - cols->in_block;
     const nav_patch_t patch = {clipped(row), clipped(row + NAV_BLOCK), clipped(col),
-                               clipped(col + NAV_BLOCK)};
+                               clipped(col_end)};
 
     return patch;
 }
@@ -386,48 +401,83 @@ static void copy(const float *raw_m, const nav_patch_t *patch, float *z_site_m)
     }
 }
 
-/* Sum and number of the known of three heights, one above the other. */
-static nav_column_t column_at(const float *raw_m, int32_t index)
+static void find_known(const float *raw_m, nav_known_t *known)
 {
-    nav_column_t column = {0.0, 0.0};
-
-    for (int32_t row = -1; row <= 1; row++)
+    for (int32_t col = 0; col < NAV_FILLED_FROM; col++)
     {
-        const float z_m = raw_m[index + (row * NAV_RAW)];
-        const bool is_known = z_m < NAV_SURFACE_UNKNOWN_M;
-
-        column.z_sum_m += is_known ? (double) z_m : 0.0;
-        column.known_count += is_known ? 1.0 : 0.0;
+        known->z_m[col] = (raw_m[col] < NAV_SURFACE_UNKNOWN_M) ? raw_m[col] : 0.0F;
+        known->is_known[col] = (raw_m[col] < NAV_SURFACE_UNKNOWN_M) ? 1.0F : 0.0F;
     }
-    return column;
 }
 
-/* Copies a patch to the surface, gaps with enough known neighbours closed. */
+/* Over three rows, from south, and three columns. */
+static void take_means(const nav_known_t rows[3], nav_means_t *means)
+{
+    double z_sum_m[NAV_FILLED_FROM];
+    float count[NAV_FILLED_FROM];
+    float divisor[NAV_FILLED];
+
+    for (int32_t col = 0; col < NAV_FILLED_FROM; col++)
+    {
+        z_sum_m[col] = ((0.0 + (double) rows[0].z_m[col]) + (double) rows[1].z_m[col]) +
+                       (double) rows[2].z_m[col];
+        count[col] = rows[0].is_known[col] + rows[1].is_known[col] + rows[2].is_known[col];
+    }
+    for (int32_t col = 0; col < NAV_FILLED; col++)
+    {
+        const float known_count = count[col] + count[col + 1] + count[col + 2];
+
+        means->known_count[col] = known_count;
+        divisor[col] = (known_count > 1.0F) ? known_count : 1.0F;
+    }
+    for (int32_t col = 0; col < NAV_FILLED; col++)
+    {
+        const double sum_m = z_sum_m[col] + z_sum_m[col + 1] + z_sum_m[col + 2];
+
+        means->mean_m[col] = (float) (sum_m / (double) divisor[col]);
+    }
+}
+
+static void close_gaps(const float *raw_m,
+                       const nav_means_t *means,
+                       float known_min,
+                       float *z_site_m)
+{
+    for (int32_t col = 0; col < NAV_FILLED; col++)
+    {
+        const float gap_m =
+            (means->known_count[col] >= known_min) ? means->mean_m[col] : NAV_SURFACE_UNKNOWN_M;
+
+        z_site_m[col] = (raw_m[col] < NAV_SURFACE_UNKNOWN_M) ? raw_m[col] : gap_m;
+    }
+}
+
+/*
+ * Copies a patch to the surface, gaps with enough known neighbours closed. The last cells done in one go
+ * may lie beyond the patch, where they get what they have or will get.
+ */
 static void fill(const float *raw_m,
                  const nav_patch_t *patch,
                  double neighbors_min,
                  float *z_site_m)
 {
+    const float known_min = (float) -floor(-neighbors_min); /* what is counted is whole */
+    const int32_t last = NAV_SIZE - NAV_FILLED;
+
     for (int32_t row = patch->row; row < patch->row_end; row++)
     {
-        int32_t index = ((row + 1) * NAV_RAW) + (patch->col + 1);
-        nav_column_t west = column_at(raw_m, index - 1);
-        nav_column_t here = column_at(raw_m, index);
-
-        for (int32_t col = patch->col; col < patch->col_end; col++)
+        for (int32_t first = patch->col; first < patch->col_end; first += NAV_FILLED)
         {
-            const nav_column_t east = column_at(raw_m, index + 1);
-            const double known_count = west.known_count + here.known_count + east.known_count;
-            float z_m = raw_m[index];
+            const int32_t col = (first < last) ? first : last;
+            const float *south_m = &raw_m[(row * NAV_RAW) + col]; /* and west: there is a border */
+            nav_known_t rows[3];
+            nav_means_t means;
 
-            if ((z_m >= NAV_SURFACE_UNKNOWN_M) && (known_count >= neighbors_min))
-            {
-                z_m = (float) ((west.z_sum_m + here.z_sum_m + east.z_sum_m) / known_count);
-            }
-            z_site_m[(row * NAV_SIZE) + col] = z_m;
-            west = here;
-            here = east;
-            index += 1;
+            find_known(south_m, &rows[0]);
+            find_known(&south_m[NAV_RAW], &rows[1]);
+            find_known(&south_m[2 * NAV_RAW], &rows[2]);
+            take_means(rows, &means);
+            close_gaps(&south_m[NAV_RAW + 1], &means, known_min, &z_site_m[(row * NAV_SIZE) + col]);
         }
     }
 }
@@ -501,7 +551,7 @@ static void renew(nav_heightmap_t *map, double time_s, double expiry_s, nav_surf
             if ((map->is_changed[block] != 0U) ||
                 ((time_s - state->blocks[block].oldest_s) > expiry_s))
             {
-                const nav_patch_t patch = patch_of_block(&rows, &cols, row, col);
+                const nav_patch_t patch = patch_of_blocks(&rows, &cols, row, col, col + 1);
 
                 map->is_changed[block] = 1U;
                 unwrap(map, &patch, time_s, expiry_s, &state->blocks[block], state->z_m);
@@ -537,37 +587,72 @@ static void stamp(const uint8_t *is_changed, nav_surface_state_t *state)
     }
 }
 
-/* Closes the gaps of all blocks with the number of this surface. */
-static void fill_stamped(const nav_heightmap_t *map,
-                         const nav_surface_state_t *state,
-                         double neighbors_min,
-                         float *z_site_m)
+/* What a surface asks of a block. */
+typedef enum
+{
+    NAV_KEEP,
+    NAV_COPY, /* it has no gaps */
+    NAV_FILL
+} nav_task_t;
+
+static nav_task_t task_of(const nav_surface_state_t *state, int32_t block)
+{
+    nav_task_t task = NAV_KEEP;
+
+    if (state->changed_at[block] == state->surface_count)
+    {
+        task = (state->blocks[block].gap_count == 0U) ? NAV_COPY : NAV_FILL;
+    }
+    return task;
+}
+
+/* The end of the blocks side by side that ask for the same as the one at a place. */
+static int32_t end_of_task(const nav_task_t tasks[NAV_BLOCKS_SIDE], int32_t col)
+{
+    int32_t end = col + 1;
+
+    while ((end < NAV_SIDE) && (tasks[end] == tasks[col]))
+    {
+        end += 1;
+    }
+    return end;
+}
+
+/* Takes a row of blocks, given by its place from that of the map's corner, to the surface. */
+static void fill_row(const nav_heightmap_t *map,
+                     const nav_surface_state_t *state,
+                     double neighbors_min,
+                     int32_t row,
+                     float *z_site_m)
 {
     const nav_axis_t rows = axis_from(map->origin_row);
     const nav_axis_t cols = axis_from(map->origin_col);
+    const int32_t first = wrap_once(rows.first_block + row, NAV_SIDE) * NAV_SIDE;
+    nav_task_t tasks[NAV_BLOCKS_SIDE];
+    int32_t col = 0;
 
-    for (int32_t row = 0; row < NAV_SIDE; row++)
+    for (int32_t block = 0; block < NAV_SIDE; block++)
     {
-        const int32_t first = wrap_once(rows.first_block + row, NAV_SIDE) * NAV_SIDE;
+        tasks[block] = task_of(state, first + wrap_once(cols.first_block + block, NAV_SIDE));
+    }
+    while (col < NAV_SIDE)
+    {
+        const int32_t end = end_of_task(tasks, col);
+        const nav_patch_t patch = patch_of_blocks(&rows, &cols, row, col, end);
 
-        for (int32_t col = 0; col < NAV_SIDE; col++)
+        if (tasks[col] == NAV_COPY)
         {
-            const int32_t block = first + wrap_once(cols.first_block + col, NAV_SIDE);
-
-            if (state->changed_at[block] == state->surface_count)
-            {
-                const nav_patch_t patch = patch_of_block(&rows, &cols, row, col);
-
-                if (state->blocks[block].gap_count == 0U)
-                {
-                    copy(state->z_m, &patch, z_site_m);
-                }
-                else
-                {
-                    fill(state->z_m, &patch, neighbors_min, z_site_m);
-                }
-            }
+            copy(state->z_m, &patch, z_site_m);
         }
+        else if (tasks[col] == NAV_FILL)
+        {
+            fill(state->z_m, &patch, neighbors_min, z_site_m);
+        }
+        else
+        {
+            /* neither its heights nor those beside it have changed */
+        }
+        col = end;
     }
 }
 
@@ -672,7 +757,10 @@ void nav_heightmap_surface(nav_heightmap_t *map,
     clear_border(state->z_m);
     renew(map, time_s, params->heightmap_expiry_s, state);
     stamp(map->is_changed, state);
-    fill_stamped(map, state, params->surface_fill_neighbors, surface->z_site_m);
+    for (int32_t row = 0; row < NAV_SIDE; row++)
+    {
+        fill_row(map, state, params->surface_fill_neighbors, row, surface->z_site_m);
+    }
     (void) memset(map->is_changed, 0, sizeof(map->is_changed));
 }
 
