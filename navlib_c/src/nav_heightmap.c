@@ -83,6 +83,17 @@ typedef struct
     float known_count[NAV_FILLED];
 } nav_means_t;
 
+/* The cells of a block that lie on the map, one after the other; then such as have no points. */
+#define NAV_GATHERED ((uint32_t) (NAV_CELLS_PER_COST_CELL * NAV_CELLS_PER_COST_CELL))
+typedef struct
+{
+    double z_sum_m[NAV_GATHERED];
+    double time_s[NAV_GATHERED];
+    double point_count[NAV_GATHERED];
+    double z_m[NAV_GATHERED]; /* of the surface */
+    uint32_t count;           /* of cells on the map */
+} nav_gathered_t;
+
 static nav_direction_t scaled(double scale, double x, double y, double z, double offset)
 {
     const nav_direction_t direction = {scale * x, scale * y, scale * z, offset};
@@ -307,22 +318,6 @@ static void mark_moved(nav_heightmap_t *map, int32_t origin_row, int32_t origin_
     }
 }
 
-static float height_of_cell(const nav_height_cell_t *cell, double time_s, double expiry_s)
-{
-    float z_m = NAV_SURFACE_UNKNOWN_M;
-
-    if ((cell->point_count > 0U) && ((time_s - cell->time_s) <= expiry_s))
-    {
-        const double mean_m = cell->z_sum_m / (double) cell->point_count;
-
-        if (fabs(mean_m) < (double) NAV_SURFACE_UNKNOWN_M)
-        {
-            z_m = (float) mean_m;
-        }
-    }
-    return z_m;
-}
-
 /* Cells of blocks that lie on the map, as its rows and columns from the corner. */
 typedef struct
 {
@@ -355,19 +350,14 @@ static nav_patch_t patch_of_blocks(const nav_axis_t *rows,
     return patch;
 }
 
-/* Takes the heights of a block from the map. */
-static void unwrap(const nav_heightmap_t *map,
-                   const nav_patch_t *patch,
-                   double time_s,
-                   double expiry_s,
-                   nav_surface_block_t *block,
-                   float *raw_m)
+/* Takes the cells of a block from the map. @return false when none of them has a point */
+static bool gather(const nav_heightmap_t *map, const nav_patch_t *patch, nav_gathered_t *cells)
 {
     const int32_t first_col = nav_wrap_index(map->origin_col + patch->col, NAV_SIZE);
     int32_t stored_row = nav_wrap_index(map->origin_row + patch->row, NAV_SIZE);
-    double oldest_s = NAV_TIME_NEVER_S;
-    uint32_t gap_count = 0U;
+    uint32_t any_count = 0U;
 
+    cells->count = 0U;
     for (int32_t row = patch->row; row < patch->row_end; row++)
     {
         int32_t stored_col = first_col;
@@ -375,18 +365,112 @@ static void unwrap(const nav_heightmap_t *map,
         for (int32_t col = patch->col; col < patch->col_end; col++)
         {
             const nav_height_cell_t *cell = &map->cells[(stored_row * NAV_SIZE) + stored_col];
-            const float z_m = height_of_cell(cell, time_s, expiry_s);
-            const bool is_gap = z_m >= NAV_SURFACE_UNKNOWN_M;
 
-            raw_m[((row + 1) * NAV_RAW) + (col + 1)] = z_m;
-            oldest_s = ((!is_gap) && (cell->time_s < oldest_s)) ? cell->time_s : oldest_s;
-            gap_count += is_gap ? 1U : 0U;
+            cells->z_sum_m[cells->count] = cell->z_sum_m;
+            cells->time_s[cells->count] = cell->time_s;
+            cells->point_count[cells->count] = (double) cell->point_count;
+            cells->count += 1U;
+            any_count |= cell->point_count;
             stored_col = wrap_once(stored_col + 1, NAV_SIZE);
         }
         stored_row = wrap_once(stored_row + 1, NAV_SIZE);
     }
-    block->oldest_s = oldest_s;
-    block->gap_count = gap_count;
+    for (uint32_t cell = cells->count; cell < NAV_GATHERED; cell++)
+    {
+        cells->z_sum_m[cell] = 0.0;
+        cells->time_s[cell] = 0.0;
+        cells->point_count[cell] = 0.0;
+    }
+    return any_count > 0U;
+}
+
+/* Takes the means for heights; what has no points or is too old is unknown, and has no time. */
+static void judge_heights(nav_gathered_t *cells, double time_s, double expiry_s)
+{
+    const double unknown_m = (double) NAV_SURFACE_UNKNOWN_M;
+    double divisor[NAV_GATHERED];
+
+    for (uint32_t cell = 0U; cell < NAV_GATHERED; cell++)
+    {
+        divisor[cell] = (cells->point_count[cell] > 1.0) ? cells->point_count[cell] : 1.0;
+    }
+    for (uint32_t cell = 0U; cell < NAV_GATHERED; cell++)
+    {
+        const double age_s = time_s - cells->time_s[cell];
+        const double mean_m = cells->z_sum_m[cell] / divisor[cell];
+        const double near_m = (fabs(mean_m) < unknown_m) ? mean_m : unknown_m;
+        const double seen_m = (cells->point_count[cell] > 0.0) ? near_m : unknown_m;
+
+        cells->z_m[cell] = (age_s <= expiry_s) ? seen_m : unknown_m;
+    }
+    for (uint32_t cell = 0U; cell < NAV_GATHERED; cell++)
+    {
+        cells->time_s[cell] =
+            (cells->z_m[cell] < unknown_m) ? cells->time_s[cell] : NAV_TIME_NEVER_S;
+    }
+}
+
+static nav_surface_block_t sum_up(const nav_gathered_t *cells)
+{
+    nav_surface_block_t block = {NAV_TIME_NEVER_S, cells->count};
+
+    for (uint32_t cell = 0U; cell < NAV_GATHERED; cell++)
+    {
+        const double time_s = cells->time_s[cell];
+
+        block.oldest_s = (time_s < block.oldest_s) ? time_s : block.oldest_s;
+        block.gap_count -= (cells->z_m[cell] < (double) NAV_SURFACE_UNKNOWN_M) ? 1U : 0U;
+    }
+    return block;
+}
+
+static void place_heights(const nav_gathered_t *cells, const nav_patch_t *patch, float *raw_m)
+{
+    uint32_t cell = 0U;
+
+    for (int32_t row = patch->row; row < patch->row_end; row++)
+    {
+        for (int32_t col = patch->col; col < patch->col_end; col++)
+        {
+            raw_m[((row + 1) * NAV_RAW) + (col + 1)] = (float) cells->z_m[cell];
+            cell += 1U;
+        }
+    }
+}
+
+static void place_unknown(const nav_patch_t *patch, float *raw_m)
+{
+    for (int32_t row = patch->row; row < patch->row_end; row++)
+    {
+        for (int32_t col = patch->col; col < patch->col_end; col++)
+        {
+            raw_m[((row + 1) * NAV_RAW) + (col + 1)] = NAV_SURFACE_UNKNOWN_M;
+        }
+    }
+}
+
+/* Takes the heights of a block from the map. */
+static nav_surface_block_t unwrap(const nav_heightmap_t *map,
+                                  const nav_patch_t *patch,
+                                  double time_s,
+                                  double expiry_s,
+                                  float *raw_m)
+{
+    nav_gathered_t cells;
+    nav_surface_block_t block = {NAV_TIME_NEVER_S, 0U};
+
+    if (gather(map, patch, &cells))
+    {
+        judge_heights(&cells, time_s, expiry_s);
+        place_heights(&cells, patch, raw_m);
+        block = sum_up(&cells);
+    }
+    else
+    {
+        place_unknown(patch, raw_m);
+        block.gap_count = cells.count;
+    }
+    return block;
 }
 
 /* Copies a patch without gaps to the surface. */
@@ -554,7 +638,7 @@ static void renew(nav_heightmap_t *map, double time_s, double expiry_s, nav_surf
                 const nav_patch_t patch = patch_of_blocks(&rows, &cols, row, col, col + 1);
 
                 map->is_changed[block] = 1U;
-                unwrap(map, &patch, time_s, expiry_s, &state->blocks[block], state->z_m);
+                state->blocks[block] = unwrap(map, &patch, time_s, expiry_s, state->z_m);
             }
         }
     }
