@@ -485,13 +485,18 @@ static void copy(const float *raw_m, const nav_patch_t *patch, float *z_site_m)
     }
 }
 
-static void find_known(const float *raw_m, nav_known_t *known)
+/* @return the number of known heights */
+static uint32_t find_known(const float *raw_m, nav_known_t *known)
 {
+    uint32_t count = 0U;
+
     for (int32_t col = 0; col < NAV_FILLED_FROM; col++)
     {
         known->z_m[col] = (raw_m[col] < NAV_SURFACE_UNKNOWN_M) ? raw_m[col] : 0.0F;
         known->is_known[col] = (raw_m[col] < NAV_SURFACE_UNKNOWN_M) ? 1.0F : 0.0F;
+        count += (raw_m[col] < NAV_SURFACE_UNKNOWN_M) ? 1U : 0U;
     }
+    return count;
 }
 
 /* Over three rows, from south, and three columns. */
@@ -536,33 +541,56 @@ static void close_gaps(const float *raw_m,
     }
 }
 
+/* Copies a patch to the surface, gaps with enough known neighbours closed, in rows of NAV_FILLED. */
+static void fill_part(const float *raw_m,
+                      const nav_patch_t *patch,
+                      double neighbors_min,
+                      float *z_site_m)
+{
+    const float known_min = (float) -floor(-neighbors_min); /* what is counted is whole */
+    const int32_t row_count = patch->row_end - patch->row;
+    const float *south_m = &raw_m[(patch->row * NAV_RAW) + patch->col]; /* with the border */
+    nav_known_t rows[NAV_CELLS_PER_COST_CELL + 2];
+    uint32_t known_count = 0U;
+
+    for (int32_t row = 0; row < (row_count + 2); row++)
+    {
+        known_count += find_known(&south_m[row * NAV_RAW], &rows[row]);
+    }
+    if (known_count > 0U)
+    {
+        for (int32_t row = 0; row < row_count; row++)
+        {
+            nav_means_t means;
+
+            take_means(&rows[row], &means);
+            close_gaps(&south_m[((row + 1) * NAV_RAW) + 1], &means, known_min,
+                       &z_site_m[((patch->row + row) * NAV_SIZE) + patch->col]);
+        }
+    }
+    else
+    {
+        copy(raw_m, patch, z_site_m);
+    }
+}
+
 /*
- * Copies a patch to the surface, gaps with enough known neighbours closed. The last cells done in one go
- * may lie beyond the patch, where they get what they have or will get.
+ * Copies a patch to the surface, gaps with enough known neighbours closed. The last part may reach beyond
+ * the patch: cells there get what they have or will get.
  */
 static void fill(const float *raw_m,
                  const nav_patch_t *patch,
                  double neighbors_min,
                  float *z_site_m)
 {
-    const float known_min = (float) -floor(-neighbors_min); /* what is counted is whole */
     const int32_t last = NAV_SIZE - NAV_FILLED;
 
-    for (int32_t row = patch->row; row < patch->row_end; row++)
+    for (int32_t first = patch->col; first < patch->col_end; first += NAV_FILLED)
     {
-        for (int32_t first = patch->col; first < patch->col_end; first += NAV_FILLED)
-        {
-            const int32_t col = (first < last) ? first : last;
-            const float *south_m = &raw_m[(row * NAV_RAW) + col]; /* and west: there is a border */
-            nav_known_t rows[3];
-            nav_means_t means;
+        const int32_t col = (first < last) ? first : last;
+        const nav_patch_t part = {patch->row, patch->row_end, col, col + NAV_FILLED};
 
-            find_known(south_m, &rows[0]);
-            find_known(&south_m[NAV_RAW], &rows[1]);
-            find_known(&south_m[2 * NAV_RAW], &rows[2]);
-            take_means(rows, &means);
-            close_gaps(&south_m[NAV_RAW + 1], &means, known_min, &z_site_m[(row * NAV_SIZE) + col]);
-        }
+        fill_part(raw_m, &part, neighbors_min, z_site_m);
     }
 }
 
