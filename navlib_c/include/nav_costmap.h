@@ -66,7 +66,6 @@ typedef struct
 {
     nav_moments_t blocks[NAV_BLOCKS];
     nav_moments_t strips[NAV_BLOCKS];      /* a patch wide, a block high */
-    uint8_t is_strip_new[NAV_BLOCKS];      /* in this update */
     uint32_t fitted_at[NAV_COSTMAP_CELLS]; /* surface_count when the cell was last recomputed */
     double z_reference_m;   /* heights are taken from here, to keep their squares small */
     uint32_t surface_count; /* of the last surface seen; 0: none */

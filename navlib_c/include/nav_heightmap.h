@@ -29,6 +29,13 @@ typedef struct
 #define NAV_BLOCKS_SIDE ((NAV_HEIGHTMAP_SIZE / NAV_CELLS_PER_COST_CELL) + 1)
 #define NAV_BLOCKS (NAV_BLOCKS_SIDE * NAV_BLOCKS_SIDE)
 
+/** Where a row or a column begins in storage: a cell's index is the sum of its row's and its column's. */
+typedef struct
+{
+    int32_t cell;  /* in cells of a map; negative outside */
+    int32_t block; /* in tables by block */
+} nav_line_t;
+
 typedef struct
 {
     double cell_m;
@@ -36,7 +43,9 @@ typedef struct
     int32_t origin_col; /* global index of the westernmost column */
     uint32_t is_placed; /* 0 until first centred */
     nav_height_cell_t cells[NAV_HEIGHTMAP_CELLS];
-    uint8_t is_changed[NAV_BLOCKS]; /* 1 when the block changed since the last surface */
+    uint8_t is_changed[NAV_BLOCKS];          /* 1 when the block changed since the last surface */
+    nav_line_t rows[NAV_HEIGHTMAP_SIZE + 1]; /* what merging works with, from the map's corner; */
+    nav_line_t cols[NAV_HEIGHTMAP_SIZE + 1]; /* the last one stands for all outside */
 } nav_heightmap_t;
 
 /** Surface height of an unknown cell: nothing on Mars is this deep. */

@@ -26,17 +26,20 @@
 /* Known cells on one line leave a determinant of rounding errors only. */
 #define NAV_SINGULAR_SHARE 1.0e-9
 
+_Static_assert(NAV_BLOCKS_SIDE <= 64, "sets of blocks in a row have a bit for each");
+
 /* The blocks of a surface: row and column 0 are those of its corner. */
 typedef struct
 {
     const nav_surface_t *surface;
-    const nav_surface_state_t *changes;
-    uint32_t seen_count; /* blocks with a greater number changed; 0: all */
-    int32_t first_row;   /* global index of the first block, in costmap cells */
+    int32_t first_row; /* global index of the first block, in costmap cells */
     int32_t first_col;
     int32_t table_row; /* where the first row stands in tables */
     int32_t table_col;
     int32_t patch_half; /* blocks to either side of the middle one */
+    /* by row of blocks; bit k is the one in column k */
+    uint64_t new_blocks[NAV_BLOCKS_SIDE];
+    uint64_t new_strips[NAV_BLOCKS_SIDE];
 } nav_window_t;
 
 typedef struct
@@ -85,9 +88,33 @@ static int32_t table_index(const nav_window_t *window, int32_t row, int32_t col)
            ((table_col < NAV_SIDE) ? table_col : (table_col - NAV_SIDE));
 }
 
-static bool is_changed(const nav_window_t *window, int32_t block)
+static bool has(uint64_t set, int32_t place)
 {
-    return window->changes->changed_at[block] > window->seen_count;
+    return ((set >> (uint32_t) place) & 1U) != 0U;
+}
+
+/* Finds the blocks with a greater number than one, and the strips that they are in. */
+static void find_new(nav_window_t *window, const nav_surface_state_t *changes, uint32_t seen_count)
+{
+    for (int32_t row = 0; row < NAV_SIDE; row++)
+    {
+        uint64_t blocks = 0U;
+        uint64_t strips = 0U;
+
+        for (int32_t col = 0; col < NAV_SIDE; col++)
+        {
+            const uint32_t changed_at = changes->changed_at[table_index(window, row, col)];
+
+            blocks |= ((changed_at > seen_count) ? (uint64_t) 1U : 0U) << (uint32_t) col;
+        }
+        strips = blocks;
+        for (int32_t step = 0; step < window->patch_half; step++)
+        {
+            strips |= (strips << 1U) | (strips >> 1U);
+        }
+        window->new_blocks[row] = blocks;
+        window->new_strips[row] = strips;
+    }
 }
 
 static void add_height(nav_moments_t *sum, double u, double v, double z)
@@ -104,31 +131,88 @@ static void add_height(nav_moments_t *sum, double u, double v, double z)
     sum->zz += z * z;
 }
 
-/* Adds sums whose middle lies u, v from the middle of the total. */
-static void add_moved(nav_moments_t *total, const nav_moments_t *part, double u, double v)
+/* Adds sums whose middle lies u cells north of the middle of the total. */
+static void add_north(nav_moments_t *total, const nav_moments_t *part, double u)
 {
     total->count += part->count;
     total->u += part->u + (u * part->count);
-    total->v += part->v + (v * part->count);
+    total->v += part->v;
     total->z += part->z;
     total->uu += part->uu + (u * ((2.0 * part->u) + (u * part->count)));
-    total->uv += part->uv + (u * part->v) + (v * part->u) + (u * v * part->count);
-    total->vv += part->vv + (v * ((2.0 * part->v) + (v * part->count)));
+    total->uv += part->uv + (u * part->v);
+    total->vv += part->vv;
     total->uz += part->uz + (u * part->z);
+    total->vz += part->vz;
+    total->zz += part->zz;
+}
+
+/* The same v cells east. */
+static void add_east(nav_moments_t *total, const nav_moments_t *part, double v)
+{
+    total->count += part->count;
+    total->u += part->u;
+    total->v += part->v + (v * part->count);
+    total->z += part->z;
+    total->uu += part->uu;
+    total->uv += part->uv + (v * part->u);
+    total->vv += part->vv + (v * ((2.0 * part->v) + (v * part->count)));
+    total->uz += part->uz;
     total->vz += part->vz + (v * part->z);
     total->zz += part->zz;
 }
 
-static nav_moments_t sum_block(const nav_window_t *window,
-                               double z_reference_m,
-                               int32_t block_row,
-                               int32_t block_col)
+/* Place of a row or column of a block from its middle. */
+static double from_middle(int32_t place)
 {
-    const double middle = ((double) NAV_BLOCK - 1.0) / 2.0;
-    const int32_t first_row =
-        ((window->first_row + block_row) * NAV_BLOCK) - window->surface->origin_row;
-    const int32_t first_col =
-        ((window->first_col + block_col) * NAV_BLOCK) - window->surface->origin_col;
+    return (double) place - (((double) NAV_BLOCK - 1.0) / 2.0);
+}
+
+/* Known cells of a block wholly on the surface, given its first height. */
+static int32_t count_known(const float *z_site_m)
+{
+    int32_t known_count = 0;
+
+    for (int32_t row = 0; row < NAV_BLOCK; row++)
+    {
+        for (int32_t col = 0; col < NAV_BLOCK; col++)
+        {
+            known_count += is_known(z_site_m[(row * NAV_SURFACE_SIZE) + col]) ? 1 : 0;
+        }
+    }
+    return known_count;
+}
+
+/* Of a block wholly on the surface and known, given its first height. */
+static nav_moments_t sum_whole(const float *z_site_m, double z_reference_m)
+{
+    const double count = (double) NAV_BLOCK * (double) NAV_BLOCK;
+    const double square_sum = count * (count - 1.0) / 12.0;
+    nav_moments_t sum = {0};
+
+    sum.count = count;
+    sum.uu = square_sum;
+    sum.vv = square_sum;
+    for (int32_t row = 0; row < NAV_BLOCK; row++)
+    {
+        for (int32_t col = 0; col < NAV_BLOCK; col++)
+        {
+            const double z = (double) z_site_m[(row * NAV_SURFACE_SIZE) + col] - z_reference_m;
+
+            sum.z += z;
+            sum.uz += from_middle(row) * z;
+            sum.vz += from_middle(col) * z;
+            sum.zz += z * z;
+        }
+    }
+    return sum;
+}
+
+/* Of the known cells of a patch of a block, given the place of its first cell on the surface. */
+static nav_moments_t sum_known(const nav_surface_t *surface,
+                               double z_reference_m,
+                               int32_t first_row,
+                               int32_t first_col)
+{
     nav_moments_t sum = {0};
 
     for (int32_t row = 0; row < NAV_BLOCK; row++)
@@ -141,15 +225,56 @@ static nav_moments_t sum_block(const nav_window_t *window,
             if ((at_row >= 0) && (at_row < NAV_SURFACE_SIZE) && (at_col >= 0) &&
                 (at_col < NAV_SURFACE_SIZE))
             {
-                const float z_m = window->surface->z_site_m[(at_row * NAV_SURFACE_SIZE) + at_col];
+                const float z_m = surface->z_site_m[(at_row * NAV_SURFACE_SIZE) + at_col];
 
                 if (is_known(z_m))
                 {
-                    add_height(&sum, (double) row - middle, (double) col - middle,
+                    add_height(&sum, from_middle(row), from_middle(col),
                                (double) z_m - z_reference_m);
                 }
             }
         }
+    }
+    return sum;
+}
+
+/* Does a block lie wholly on the surface? All in heightmap cells, along one axis. */
+static bool is_covered(int32_t first)
+{
+    return (first >= 0) && ((first + NAV_BLOCK) <= NAV_SURFACE_SIZE);
+}
+
+static nav_moments_t sum_block(const nav_window_t *window,
+                               double z_reference_m,
+                               int32_t block_row,
+                               int32_t block_col)
+{
+    const nav_surface_t *surface = window->surface;
+    const int32_t row = ((window->first_row + block_row) * NAV_BLOCK) - surface->origin_row;
+    const int32_t col = ((window->first_col + block_col) * NAV_BLOCK) - surface->origin_col;
+    nav_moments_t sum = {0};
+
+    if (is_covered(row) && is_covered(col))
+    {
+        const float *z_site_m = &surface->z_site_m[(row * NAV_SURFACE_SIZE) + col];
+        const int32_t known_count = count_known(z_site_m);
+
+        if (known_count == (NAV_BLOCK * NAV_BLOCK))
+        {
+            sum = sum_whole(z_site_m, z_reference_m);
+        }
+        else if (known_count > 0)
+        {
+            sum = sum_known(surface, z_reference_m, row, col);
+        }
+        else
+        {
+            /* nothing to add up */
+        }
+    }
+    else
+    {
+        sum = sum_known(surface, z_reference_m, row, col);
     }
     return sum;
 }
@@ -160,11 +285,10 @@ static void sum_blocks(const nav_window_t *window, nav_costmap_state_t *state)
     {
         for (int32_t col = 0; col < NAV_SIDE; col++)
         {
-            const int32_t block = table_index(window, row, col);
-
-            if (is_changed(window, block))
+            if (has(window->new_blocks[row], col))
             {
-                state->blocks[block] = sum_block(window, state->z_reference_m, row, col);
+                state->blocks[table_index(window, row, col)] =
+                    sum_block(window, state->z_reference_m, row, col);
             }
         }
     }
@@ -187,31 +311,20 @@ static nav_reach_t reach_of(const nav_window_t *window, int32_t place)
 }
 
 /* Strips: for each block, the sum over the blocks beside it that belong to its patch. */
-static void sum_strip(const nav_window_t *window,
-                      nav_costmap_state_t *state,
-                      int32_t row,
-                      int32_t col)
+static nav_moments_t sum_strip(const nav_window_t *window,
+                               const nav_costmap_state_t *state,
+                               int32_t row,
+                               int32_t col)
 {
     const nav_reach_t reach = reach_of(window, col);
-    const int32_t strip = table_index(window, row, col);
-    bool is_new = false;
+    nav_moments_t strip = {0};
 
-    for (int32_t other = reach.low; (other <= reach.high) && (!is_new); other++)
+    for (int32_t other = reach.low; other <= reach.high; other++)
     {
-        is_new = is_changed(window, table_index(window, row, other));
+        add_east(&strip, &state->blocks[table_index(window, row, other)],
+                 ((double) other - (double) col) * (double) NAV_BLOCK);
     }
-    state->is_strip_new[strip] = is_new ? 1U : 0U;
-    if (is_new)
-    {
-        nav_moments_t sum = {0};
-
-        for (int32_t other = reach.low; other <= reach.high; other++)
-        {
-            add_moved(&sum, &state->blocks[table_index(window, row, other)], 0.0,
-                      ((double) other - (double) col) * (double) NAV_BLOCK);
-        }
-        state->strips[strip] = sum;
-    }
+    return strip;
 }
 
 static void sum_strips(const nav_window_t *window, nav_costmap_state_t *state)
@@ -220,24 +333,40 @@ static void sum_strips(const nav_window_t *window, nav_costmap_state_t *state)
     {
         for (int32_t col = 0; col < NAV_SIDE; col++)
         {
-            sum_strip(window, state, row, col);
+            if (has(window->new_strips[row], col))
+            {
+                state->strips[table_index(window, row, col)] = sum_strip(window, state, row, col);
+            }
         }
     }
 }
 
-static bool is_patch_new(const nav_window_t *window,
-                         const nav_costmap_state_t *state,
-                         int32_t row,
-                         int32_t col)
+/* In a row of blocks, those in whose patch there is a new block. */
+static uint64_t find_new_patches(const nav_window_t *window, int32_t row)
 {
     const nav_reach_t reach = reach_of(window, row);
-    bool is_new = false;
+    uint64_t patches = 0U;
 
-    for (int32_t other = reach.low; (other <= reach.high) && (!is_new); other++)
+    for (int32_t other = reach.low; other <= reach.high; other++)
     {
-        is_new = state->is_strip_new[table_index(window, other, col)] != 0U;
+        patches |= window->new_strips[other];
     }
-    return is_new;
+    return patches;
+}
+
+static double count_patch(const nav_window_t *window,
+                          const nav_costmap_state_t *state,
+                          int32_t row,
+                          int32_t col)
+{
+    const nav_reach_t reach = reach_of(window, row);
+    double known_count = 0.0;
+
+    for (int32_t other = reach.low; other <= reach.high; other++)
+    {
+        known_count += state->strips[table_index(window, other, col)].count;
+    }
+    return known_count;
 }
 
 static nav_moments_t sum_patch(const nav_window_t *window,
@@ -250,8 +379,8 @@ static nav_moments_t sum_patch(const nav_window_t *window,
 
     for (int32_t other = reach.low; other <= reach.high; other++)
     {
-        add_moved(&patch, &state->strips[table_index(window, other, col)],
-                  ((double) other - (double) row) * (double) NAV_BLOCK, 0.0);
+        add_north(&patch, &state->strips[table_index(window, other, col)],
+                  ((double) other - (double) row) * (double) NAV_BLOCK);
     }
     return patch;
 }
@@ -330,20 +459,23 @@ static void set_plane(nav_cost_cell_t *cell, const nav_params_t *params, const n
     }
 }
 
+/* Known cells that a patch must have for a plane. */
+static double known_min(const nav_window_t *window, const nav_params_t *params)
+{
+    const double side = ((2.0 * (double) window->patch_half) + 1.0) * (double) NAV_BLOCK;
+
+    return params->costmap_patch_known_min * side * side;
+}
+
 static void judge_patch(nav_cost_cell_t *cell,
                         const nav_params_t *params,
-                        const nav_window_t *window,
+                        double cell_m,
                         double z_reference_m,
                         const nav_moments_t *patch)
 {
-    const double side = ((2.0 * (double) window->patch_half) + 1.0) * (double) NAV_BLOCK;
     nav_plane_t plane = {0.0, 0.0, 0.0, 0.0};
 
-    if (patch->count < (params->costmap_patch_known_min * side * side))
-    {
-        forget_ground(cell, params);
-    }
-    else if (!fit_plane(patch, window->surface->cell_m, &plane))
+    if (!fit_plane(patch, cell_m, &plane))
     {
         forget_ground(cell, params);
         cell->terrain_reason = (uint8_t) NAV_REASON_UNEXPECTED;
@@ -355,39 +487,40 @@ static void judge_patch(nav_cost_cell_t *cell,
     }
 }
 
-/* Does a block lie wholly on the surface? All in heightmap cells, along one axis. */
-static bool is_covered(int32_t block, int32_t surface_origin)
-{
-    const int32_t first = block * NAV_BLOCK;
-
-    return (first >= surface_origin) &&
-           ((first + NAV_BLOCK) <= (surface_origin + NAV_SURFACE_SIZE));
-}
-
 static void judge_row(nav_costmap_t *map,
                       nav_costmap_state_t *state,
                       const nav_params_t *params,
                       const nav_window_t *window,
                       int32_t row)
 {
+    const nav_surface_t *surface = window->surface;
+    const uint64_t new_patches = find_new_patches(window, row);
     const int32_t map_row = (window->first_row + row) - map->origin_row;
 
     if ((map_row >= 0) && (map_row < NAV_SIZE) &&
-        is_covered(window->first_row + row, window->surface->origin_row))
+        is_covered(((window->first_row + row) * NAV_BLOCK) - surface->origin_row))
     {
         for (int32_t col = 0; col < NAV_SIDE; col++)
         {
             const int32_t map_col = (window->first_col + col) - map->origin_col;
 
-            if ((map_col >= 0) && (map_col < NAV_SIZE) &&
-                is_covered(window->first_col + col, window->surface->origin_col) &&
-                is_patch_new(window, state, row, col))
+            if (has(new_patches, col) && (map_col >= 0) && (map_col < NAV_SIZE) &&
+                is_covered(((window->first_col + col) * NAV_BLOCK) - surface->origin_col))
             {
-                const nav_moments_t patch = sum_patch(window, state, row, col);
                 const int32_t index = (map_row * NAV_SIZE) + map_col;
 
-                judge_patch(&map->cells[index], params, window, state->z_reference_m, &patch);
-                state->fitted_at[index] = window->changes->surface_count;
+                if (count_patch(window, state, row, col) < known_min(window, params))
+                {
+                    forget_ground(&map->cells[index], params);
+                }
+                else
+                {
+                    const nav_moments_t patch = sum_patch(window, state, row, col);
+
+                    judge_patch(&map->cells[index], params, surface->cell_m, state->z_reference_m,
+                                &patch);
+                }
+                state->fitted_at[index] = state->surface_count;
             }
         }
     }
@@ -511,14 +644,16 @@ void nav_costmap_update(nav_costmap_t *map,
                         const nav_surface_state_t *changes)
 {
     const double z_reference_m = reference_height(surface);
-    nav_window_t window = {surface, changes, 0U, 0, 0, 0, 0, 0};
+    const uint32_t seen_count =
+        is_state_usable(state, map, z_reference_m) ? state->surface_count : 0U;
+    nav_window_t window = {surface, 0, 0, 0, 0, 0, {0U}, {0U}};
 
-    window.seen_count = is_state_usable(state, map, z_reference_m) ? state->surface_count : 0U;
     window.first_row = floor_quotient(surface->origin_row);
     window.first_col = floor_quotient(surface->origin_col);
     window.table_row = nav_wrap_index(window.first_row, NAV_SIDE);
     window.table_col = nav_wrap_index(window.first_col, NAV_SIDE);
     (void) nav_floor_index(params->costmap_patch_cells / 2.0, &window.patch_half);
+    find_new(&window, changes, seen_count);
     state->z_reference_m = z_reference_m;
     state->surface_count = changes->surface_count;
     state->origin_row = map->origin_row;
@@ -536,6 +671,8 @@ void nav_costmap_mark(nav_costmap_t *map,
                       const nav_kioz_t *kioz,
                       double zone_margin_m)
 {
+    const bool is_any_zone = kioz->zone_count > 0U;
+
     map->cycle += 1U;
     for (int32_t row = 0; row < NAV_SIZE; row++)
     {
@@ -551,7 +688,8 @@ void nav_costmap_mark(nav_costmap_t *map,
             {
                 open_cell(cell);
             }
-            cell->is_forbidden = nav_kioz_forbids(kioz, x_m, y_m, zone_margin_m) ? 1U : 0U;
+            cell->is_forbidden =
+                (is_any_zone && nav_kioz_forbids(kioz, x_m, y_m, zone_margin_m)) ? 1U : 0U;
         }
     }
 }

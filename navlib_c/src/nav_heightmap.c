@@ -23,10 +23,8 @@
 /* Time of the oldest height where there is none: it does not expire. */
 #define NAV_TIME_NEVER_S 1.0e300
 
-/* Not a place on the map. */
-#define NAV_OUTSIDE (-1)
-
-_Static_assert(NAV_BLOCKS_SIDE <= 256, "list_blocks() has a byte for each block");
+/* Where rows and columns outside the map begin: too low for any sum of a row's and a column's. */
+#define NAV_OUTSIDE (-NAV_SIZE * NAV_SIZE)
 
 /* A coordinate of a point is linear in its coordinates in ROVER. */
 typedef struct
@@ -60,18 +58,41 @@ typedef struct
     double x_m[NAV_BATCH]; /* ROVER */
     double y_m[NAV_BATCH];
     double z_m[NAV_BATCH];
-    double place[NAV_BATCH]; /* cells from the map's corner along one axis */
     double down_m[NAV_BATCH];
-    int32_t row[NAV_BATCH]; /* of storage, or NAV_OUTSIDE */
+    int32_t row[NAV_BATCH]; /* from the map's corner; NAV_SIZE outside */
     int32_t col[NAV_BATCH];
 } nav_batch_t;
 
-/* Known heights of three cells, one above the other. */
+/* Cells of a row whose gaps are closed in one go, and those that takes: one more at either end. */
+#define NAV_FILLED 20
+#define NAV_FILLED_FROM (NAV_FILLED + 2)
+
+_Static_assert(NAV_HEIGHTMAP_SIZE >= NAV_FILLED, "cells filled in one go lie on the map");
+
+/* Part of a row before gaps are closed. */
 typedef struct
 {
-    double z_sum_m;
-    double known_count;
-} nav_column_t;
+    float z_m[NAV_FILLED_FROM];      /* 0 where unknown */
+    float is_known[NAV_FILLED_FROM]; /* 1 or 0 */
+} nav_known_t;
+
+/* Of the known heights among each cell and its neighbours. */
+typedef struct
+{
+    float mean_m[NAV_FILLED]; /* 0 when there are none */
+    float known_count[NAV_FILLED];
+} nav_means_t;
+
+/* The cells of a block that lie on the map, one after the other; then such as have no points. */
+#define NAV_GATHERED ((uint32_t) (NAV_CELLS_PER_COST_CELL * NAV_CELLS_PER_COST_CELL))
+typedef struct
+{
+    double z_sum_m[NAV_GATHERED];
+    double time_s[NAV_GATHERED];
+    double point_count[NAV_GATHERED];
+    double z_m[NAV_GATHERED]; /* of the surface */
+    uint32_t count;           /* of cells on the map */
+} nav_gathered_t;
 
 static nav_direction_t scaled(double scale, double x, double y, double z, double offset)
 {
@@ -125,12 +146,35 @@ static void spread(nav_batch_t *batch, const nav_point_t *points, uint32_t count
     }
 }
 
-static void place_along(const nav_batch_t *batch, const nav_direction_t *to, double *place)
+static double along(const nav_batch_t *batch, const nav_direction_t *to, uint32_t point)
 {
+    return ((to->x * batch->x_m[point]) + (to->y * batch->y_m[point])) +
+           ((to->z * batch->z_m[point]) + to->offset);
+}
+
+/* Rows or columns of the map, from its corner. */
+static void find_cells(const nav_batch_t *batch, const nav_direction_t *to, int32_t *index)
+{
+    const double outside = (double) NAV_HEIGHTMAP_SIZE;
+
     for (uint32_t point = 0U; point < NAV_BATCH; point++)
     {
-        place[point] = ((to->x * batch->x_m[point]) + (to->y * batch->y_m[point])) +
-                       ((to->z * batch->z_m[point]) + to->offset);
+        const double place = along(batch, to, point);
+        const double from_low = (place >= 0.0) ? place : outside;
+        const double limited = (from_low < outside) ? from_low : outside;
+
+        /* not negative: truncation is floor() */
+        index[point] = (int32_t) limited;
+    }
+}
+
+static void place_points(nav_batch_t *batch, const nav_placing_t *placing)
+{
+    find_cells(batch, &placing->row, batch->row);
+    find_cells(batch, &placing->col, batch->col);
+    for (uint32_t point = 0U; point < NAV_BATCH; point++)
+    {
+        batch->down_m[point] = along(batch, &placing->down, point);
     }
 }
 
@@ -139,29 +183,19 @@ static int32_t wrap_once(int32_t index, int32_t size)
     return (index >= size) ? (index - size) : index;
 }
 
-static void store_along(const double *place, int32_t first, int32_t *stored)
-{
-    for (uint32_t point = 0U; point < NAV_BATCH; point++)
-    {
-        const double from_low = (place[point] >= 0.0) ? place[point] : (double) NAV_OUTSIDE;
-        const double inside =
-            (from_low < (double) NAV_HEIGHTMAP_SIZE) ? from_low : (double) NAV_OUTSIDE;
-        /* not negative on the map: truncation is floor() */
-        const int32_t index = (int32_t) inside;
-
-        stored[point] = (index >= 0) ? wrap_once(index + first, NAV_SIZE) : NAV_OUTSIDE;
-    }
-}
-
-/* For each place of storage along an axis, where its block stands in tables. */
-static void list_blocks(const nav_axis_t *axis, uint8_t *block_of_stored)
+/* Lists where rows or columns begin in storage, given what lies between two of them there. */
+static void list_lines(const nav_axis_t *axis,
+                       int32_t cell_step,
+                       int32_t block_step,
+                       nav_line_t lines[NAV_HEIGHTMAP_SIZE + 1])
 {
     int32_t in_block = axis->in_block;
     int32_t block = axis->first_block;
 
     for (int32_t index = 0; index < NAV_SIZE; index++)
     {
-        block_of_stored[wrap_once(axis->first + index, NAV_SIZE)] = (uint8_t) block;
+        lines[index].cell = wrap_once(axis->first + index, NAV_SIZE) * cell_step;
+        lines[index].block = block * block_step;
         in_block += 1;
         if (in_block == NAV_BLOCK)
         {
@@ -169,23 +203,16 @@ static void list_blocks(const nav_axis_t *axis, uint8_t *block_of_stored)
             block = wrap_once(block + 1, NAV_SIDE);
         }
     }
+    lines[NAV_SIZE].cell = NAV_OUTSIDE;
+    lines[NAV_SIZE].block = 0;
 }
 
-static void place_points(nav_batch_t *batch, const nav_placing_t *placing)
+/* 1 when two numbers are equal, 0 otherwise; not a comparison, which may become a branch. */
+static uint32_t are_equal(uint32_t a, uint32_t b)
 {
-    place_along(batch, &placing->row, batch->place);
-    store_along(batch->place, placing->rows.first, batch->row);
-    place_along(batch, &placing->col, batch->place);
-    store_along(batch->place, placing->cols.first, batch->col);
-    place_along(batch, &placing->down, batch->down_m);
-}
+    const uint64_t difference = (uint64_t) a ^ (uint64_t) b;
 
-/* All bits when two numbers are equal, none otherwise. */
-static uint32_t mask_of_equal(uint32_t a, uint32_t b)
-{
-    const uint32_t difference = a ^ b;
-
-    return ((difference | (0U - difference)) >> 31U) - 1U;
+    return (uint32_t) ((difference - 1U) >> 63U);
 }
 
 /*
@@ -194,13 +221,14 @@ static uint32_t mask_of_equal(uint32_t a, uint32_t b)
  */
 static uint32_t add_to_cell(nav_height_cell_t *cell, double z_m, double time_s, uint32_t image_id)
 {
-    const uint32_t mask = mask_of_equal(cell->image_id, image_id);
-    const uint32_t count = mask & cell->point_count;
+    static const double kept[2] = {0.0, 1.0}; /* of the sum of another image, of this one */
+    const uint32_t is_same = are_equal(cell->image_id, image_id);
+    const uint32_t count = (0U - is_same) & cell->point_count;
     const bool is_taken = count < NAV_CELL_POINTS_MAX;
 
     if (is_taken)
     {
-        cell->z_sum_m = ((double) (mask & 1U) * cell->z_sum_m) + z_m;
+        cell->z_sum_m = (kept[is_same] * cell->z_sum_m) + z_m;
         cell->time_s = time_s;
         cell->image_id = image_id;
         cell->point_count = count + 1U;
@@ -290,23 +318,7 @@ static void mark_moved(nav_heightmap_t *map, int32_t origin_row, int32_t origin_
     }
 }
 
-static float height_of_cell(const nav_height_cell_t *cell, double time_s, double expiry_s)
-{
-    float z_m = NAV_SURFACE_UNKNOWN_M;
-
-    if ((cell->point_count > 0U) && ((time_s - cell->time_s) <= expiry_s))
-    {
-        const double mean_m = cell->z_sum_m / (double) cell->point_count;
-
-        if (fabs(mean_m) < (double) NAV_SURFACE_UNKNOWN_M)
-        {
-            z_m = (float) mean_m;
-        }
-    }
-    return z_m;
-}
-
-/* Cells of a block that lie on the map, as its rows and columns from the corner. */
+/* Cells of blocks that lie on the map, as its rows and columns from the corner. */
 typedef struct
 {
     int32_t row;
@@ -322,33 +334,30 @@ static int32_t clipped(int32_t place)
     return (from_low < NAV_SIZE) ? from_low : NAV_SIZE;
 }
 
-/* Of a block given by its place from that of the map's corner. */
-static nav_patch_t patch_of_block(const nav_axis_t *rows,
-                                  const nav_axis_t *cols,
-                                  int32_t block_row,
-                                  int32_t block_col)
+/* Of blocks side by side, given by their places from that of the map's corner. */
+static nav_patch_t patch_of_blocks(const nav_axis_t *rows,
+                                   const nav_axis_t *cols,
+                                   int32_t block_row,
+                                   int32_t block_col,
+                                   int32_t block_col_end)
 {
     const int32_t row = (block_row * NAV_BLOCK) - rows->in_block;
     const int32_t col = (block_col * NAV_BLOCK) - cols->in_block;
+    const int32_t col_end = (block_col_end * NAV_BLOCK) - cols->in_block;
     const nav_patch_t patch = {clipped(row), clipped(row + NAV_BLOCK), clipped(col),
-                               clipped(col + NAV_BLOCK)};
+                               clipped(col_end)};
 
     return patch;
 }
 
-/* Takes the heights of a block from the map. */
-static void unwrap(const nav_heightmap_t *map,
-                   const nav_patch_t *patch,
-                   double time_s,
-                   double expiry_s,
-                   nav_surface_block_t *block,
-                   float *raw_m)
+/* Takes the cells of a block from the map. @return false when none of them has a point */
+static bool gather(const nav_heightmap_t *map, const nav_patch_t *patch, nav_gathered_t *cells)
 {
     const int32_t first_col = nav_wrap_index(map->origin_col + patch->col, NAV_SIZE);
     int32_t stored_row = nav_wrap_index(map->origin_row + patch->row, NAV_SIZE);
-    double oldest_s = NAV_TIME_NEVER_S;
-    uint32_t gap_count = 0U;
+    uint32_t any_count = 0U;
 
+    cells->count = 0U;
     for (int32_t row = patch->row; row < patch->row_end; row++)
     {
         int32_t stored_col = first_col;
@@ -356,18 +365,112 @@ static void unwrap(const nav_heightmap_t *map,
         for (int32_t col = patch->col; col < patch->col_end; col++)
         {
             const nav_height_cell_t *cell = &map->cells[(stored_row * NAV_SIZE) + stored_col];
-            const float z_m = height_of_cell(cell, time_s, expiry_s);
-            const bool is_gap = z_m >= NAV_SURFACE_UNKNOWN_M;
 
-            raw_m[((row + 1) * NAV_RAW) + (col + 1)] = z_m;
-            oldest_s = ((!is_gap) && (cell->time_s < oldest_s)) ? cell->time_s : oldest_s;
-            gap_count += is_gap ? 1U : 0U;
+            cells->z_sum_m[cells->count] = cell->z_sum_m;
+            cells->time_s[cells->count] = cell->time_s;
+            cells->point_count[cells->count] = (double) cell->point_count;
+            cells->count += 1U;
+            any_count |= cell->point_count;
             stored_col = wrap_once(stored_col + 1, NAV_SIZE);
         }
         stored_row = wrap_once(stored_row + 1, NAV_SIZE);
     }
-    block->oldest_s = oldest_s;
-    block->gap_count = gap_count;
+    for (uint32_t cell = cells->count; cell < NAV_GATHERED; cell++)
+    {
+        cells->z_sum_m[cell] = 0.0;
+        cells->time_s[cell] = 0.0;
+        cells->point_count[cell] = 0.0;
+    }
+    return any_count > 0U;
+}
+
+/* Takes the means for heights; what has no points or is too old is unknown, and has no time. */
+static void judge_heights(nav_gathered_t *cells, double time_s, double expiry_s)
+{
+    const double unknown_m = (double) NAV_SURFACE_UNKNOWN_M;
+    double divisor[NAV_GATHERED];
+
+    for (uint32_t cell = 0U; cell < NAV_GATHERED; cell++)
+    {
+        divisor[cell] = (cells->point_count[cell] > 1.0) ? cells->point_count[cell] : 1.0;
+    }
+    for (uint32_t cell = 0U; cell < NAV_GATHERED; cell++)
+    {
+        const double age_s = time_s - cells->time_s[cell];
+        const double mean_m = cells->z_sum_m[cell] / divisor[cell];
+        const double near_m = (fabs(mean_m) < unknown_m) ? mean_m : unknown_m;
+        const double seen_m = (cells->point_count[cell] > 0.0) ? near_m : unknown_m;
+
+        cells->z_m[cell] = (age_s <= expiry_s) ? seen_m : unknown_m;
+    }
+    for (uint32_t cell = 0U; cell < NAV_GATHERED; cell++)
+    {
+        cells->time_s[cell] =
+            (cells->z_m[cell] < unknown_m) ? cells->time_s[cell] : NAV_TIME_NEVER_S;
+    }
+}
+
+static nav_surface_block_t sum_up(const nav_gathered_t *cells)
+{
+    nav_surface_block_t block = {NAV_TIME_NEVER_S, cells->count};
+
+    for (uint32_t cell = 0U; cell < NAV_GATHERED; cell++)
+    {
+        const double time_s = cells->time_s[cell];
+
+        block.oldest_s = (time_s < block.oldest_s) ? time_s : block.oldest_s;
+        block.gap_count -= (cells->z_m[cell] < (double) NAV_SURFACE_UNKNOWN_M) ? 1U : 0U;
+    }
+    return block;
+}
+
+static void place_heights(const nav_gathered_t *cells, const nav_patch_t *patch, float *raw_m)
+{
+    uint32_t cell = 0U;
+
+    for (int32_t row = patch->row; row < patch->row_end; row++)
+    {
+        for (int32_t col = patch->col; col < patch->col_end; col++)
+        {
+            raw_m[((row + 1) * NAV_RAW) + (col + 1)] = (float) cells->z_m[cell];
+            cell += 1U;
+        }
+    }
+}
+
+static void place_unknown(const nav_patch_t *patch, float *raw_m)
+{
+    for (int32_t row = patch->row; row < patch->row_end; row++)
+    {
+        for (int32_t col = patch->col; col < patch->col_end; col++)
+        {
+            raw_m[((row + 1) * NAV_RAW) + (col + 1)] = NAV_SURFACE_UNKNOWN_M;
+        }
+    }
+}
+
+/* Takes the heights of a block from the map. */
+static nav_surface_block_t unwrap(const nav_heightmap_t *map,
+                                  const nav_patch_t *patch,
+                                  double time_s,
+                                  double expiry_s,
+                                  float *raw_m)
+{
+    nav_gathered_t cells;
+    nav_surface_block_t block = {NAV_TIME_NEVER_S, 0U};
+
+    if (gather(map, patch, &cells))
+    {
+        judge_heights(&cells, time_s, expiry_s);
+        place_heights(&cells, patch, raw_m);
+        block = sum_up(&cells);
+    }
+    else
+    {
+        place_unknown(patch, raw_m);
+        block.gap_count = cells.count;
+    }
+    return block;
 }
 
 /* Copies a patch without gaps to the surface. */
@@ -382,49 +485,112 @@ static void copy(const float *raw_m, const nav_patch_t *patch, float *z_site_m)
     }
 }
 
-/* Sum and number of the known of three heights, one above the other. */
-static nav_column_t column_at(const float *raw_m, int32_t index)
+/* @return the number of known heights */
+static uint32_t find_known(const float *raw_m, nav_known_t *known)
 {
-    nav_column_t column = {0.0, 0.0};
+    uint32_t count = 0U;
 
-    for (int32_t row = -1; row <= 1; row++)
+    for (int32_t col = 0; col < NAV_FILLED_FROM; col++)
     {
-        const float z_m = raw_m[index + (row * NAV_RAW)];
-        const bool is_known = z_m < NAV_SURFACE_UNKNOWN_M;
-
-        column.z_sum_m += is_known ? (double) z_m : 0.0;
-        column.known_count += is_known ? 1.0 : 0.0;
+        known->z_m[col] = (raw_m[col] < NAV_SURFACE_UNKNOWN_M) ? raw_m[col] : 0.0F;
+        known->is_known[col] = (raw_m[col] < NAV_SURFACE_UNKNOWN_M) ? 1.0F : 0.0F;
+        count += (raw_m[col] < NAV_SURFACE_UNKNOWN_M) ? 1U : 0U;
     }
-    return column;
+    return count;
 }
 
-/* Copies a patch to the surface, gaps with enough known neighbours closed. */
+/* Over three rows, from south, and three columns. */
+static void take_means(const nav_known_t rows[3], nav_means_t *means)
+{
+    double z_sum_m[NAV_FILLED_FROM];
+    float count[NAV_FILLED_FROM];
+    float divisor[NAV_FILLED];
+
+    for (int32_t col = 0; col < NAV_FILLED_FROM; col++)
+    {
+        z_sum_m[col] = ((0.0 + (double) rows[0].z_m[col]) + (double) rows[1].z_m[col]) +
+                       (double) rows[2].z_m[col];
+        count[col] = rows[0].is_known[col] + rows[1].is_known[col] + rows[2].is_known[col];
+    }
+    for (int32_t col = 0; col < NAV_FILLED; col++)
+    {
+        const float known_count = count[col] + count[col + 1] + count[col + 2];
+
+        means->known_count[col] = known_count;
+        divisor[col] = (known_count > 1.0F) ? known_count : 1.0F;
+    }
+    for (int32_t col = 0; col < NAV_FILLED; col++)
+    {
+        const double sum_m = z_sum_m[col] + z_sum_m[col + 1] + z_sum_m[col + 2];
+
+        means->mean_m[col] = (float) (sum_m / (double) divisor[col]);
+    }
+}
+
+static void close_gaps(const float *raw_m,
+                       const nav_means_t *means,
+                       float known_min,
+                       float *z_site_m)
+{
+    for (int32_t col = 0; col < NAV_FILLED; col++)
+    {
+        const float gap_m =
+            (means->known_count[col] >= known_min) ? means->mean_m[col] : NAV_SURFACE_UNKNOWN_M;
+
+        z_site_m[col] = (raw_m[col] < NAV_SURFACE_UNKNOWN_M) ? raw_m[col] : gap_m;
+    }
+}
+
+/* Copies a patch to the surface, gaps with enough known neighbours closed, in rows of NAV_FILLED. */
+static void fill_part(const float *raw_m,
+                      const nav_patch_t *patch,
+                      double neighbors_min,
+                      float *z_site_m)
+{
+    const float known_min = (float) -floor(-neighbors_min); /* what is counted is whole */
+    const int32_t row_count = patch->row_end - patch->row;
+    const float *south_m = &raw_m[(patch->row * NAV_RAW) + patch->col]; /* with the border */
+    nav_known_t rows[NAV_CELLS_PER_COST_CELL + 2];
+    uint32_t known_count = 0U;
+
+    for (int32_t row = 0; row < (row_count + 2); row++)
+    {
+        known_count += find_known(&south_m[row * NAV_RAW], &rows[row]);
+    }
+    if (known_count > 0U)
+    {
+        for (int32_t row = 0; row < row_count; row++)
+        {
+            nav_means_t means;
+
+            take_means(&rows[row], &means);
+            close_gaps(&south_m[((row + 1) * NAV_RAW) + 1], &means, known_min,
+                       &z_site_m[((patch->row + row) * NAV_SIZE) + patch->col]);
+        }
+    }
+    else
+    {
+        copy(raw_m, patch, z_site_m);
+    }
+}
+
+/*
+ * Copies a patch to the surface, gaps with enough known neighbours closed. The last part may reach beyond
+ * the patch: cells there get what they have or will get.
+ */
 static void fill(const float *raw_m,
                  const nav_patch_t *patch,
                  double neighbors_min,
                  float *z_site_m)
 {
-    for (int32_t row = patch->row; row < patch->row_end; row++)
+    const int32_t last = NAV_SIZE - NAV_FILLED;
+
+    for (int32_t first = patch->col; first < patch->col_end; first += NAV_FILLED)
     {
-        int32_t index = ((row + 1) * NAV_RAW) + (patch->col + 1);
-        nav_column_t west = column_at(raw_m, index - 1);
-        nav_column_t here = column_at(raw_m, index);
+        const int32_t col = (first < last) ? first : last;
+        const nav_patch_t part = {patch->row, patch->row_end, col, col + NAV_FILLED};
 
-        for (int32_t col = patch->col; col < patch->col_end; col++)
-        {
-            const nav_column_t east = column_at(raw_m, index + 1);
-            const double known_count = west.known_count + here.known_count + east.known_count;
-            float z_m = raw_m[index];
-
-            if ((z_m >= NAV_SURFACE_UNKNOWN_M) && (known_count >= neighbors_min))
-            {
-                z_m = (float) ((west.z_sum_m + here.z_sum_m + east.z_sum_m) / known_count);
-            }
-            z_site_m[(row * NAV_SIZE) + col] = z_m;
-            west = here;
-            here = east;
-            index += 1;
-        }
+        fill_part(raw_m, &part, neighbors_min, z_site_m);
     }
 }
 
@@ -497,10 +663,10 @@ static void renew(nav_heightmap_t *map, double time_s, double expiry_s, nav_surf
             if ((map->is_changed[block] != 0U) ||
                 ((time_s - state->blocks[block].oldest_s) > expiry_s))
             {
-                const nav_patch_t patch = patch_of_block(&rows, &cols, row, col);
+                const nav_patch_t patch = patch_of_blocks(&rows, &cols, row, col, col + 1);
 
                 map->is_changed[block] = 1U;
-                unwrap(map, &patch, time_s, expiry_s, &state->blocks[block], state->z_m);
+                state->blocks[block] = unwrap(map, &patch, time_s, expiry_s, state->z_m);
             }
         }
     }
@@ -533,37 +699,72 @@ static void stamp(const uint8_t *is_changed, nav_surface_state_t *state)
     }
 }
 
-/* Closes the gaps of all blocks with the number of this surface. */
-static void fill_stamped(const nav_heightmap_t *map,
-                         const nav_surface_state_t *state,
-                         double neighbors_min,
-                         float *z_site_m)
+/* What a surface asks of a block. */
+typedef enum
+{
+    NAV_KEEP,
+    NAV_COPY, /* it has no gaps */
+    NAV_FILL
+} nav_task_t;
+
+static nav_task_t task_of(const nav_surface_state_t *state, int32_t block)
+{
+    nav_task_t task = NAV_KEEP;
+
+    if (state->changed_at[block] == state->surface_count)
+    {
+        task = (state->blocks[block].gap_count == 0U) ? NAV_COPY : NAV_FILL;
+    }
+    return task;
+}
+
+/* The end of the blocks side by side that ask for the same as the one at a place. */
+static int32_t end_of_task(const nav_task_t tasks[NAV_BLOCKS_SIDE], int32_t col)
+{
+    int32_t end = col + 1;
+
+    while ((end < NAV_SIDE) && (tasks[end] == tasks[col]))
+    {
+        end += 1;
+    }
+    return end;
+}
+
+/* Takes a row of blocks, given by its place from that of the map's corner, to the surface. */
+static void fill_row(const nav_heightmap_t *map,
+                     const nav_surface_state_t *state,
+                     double neighbors_min,
+                     int32_t row,
+                     float *z_site_m)
 {
     const nav_axis_t rows = axis_from(map->origin_row);
     const nav_axis_t cols = axis_from(map->origin_col);
+    const int32_t first = wrap_once(rows.first_block + row, NAV_SIDE) * NAV_SIDE;
+    nav_task_t tasks[NAV_BLOCKS_SIDE];
+    int32_t col = 0;
 
-    for (int32_t row = 0; row < NAV_SIDE; row++)
+    for (int32_t block = 0; block < NAV_SIDE; block++)
     {
-        const int32_t first = wrap_once(rows.first_block + row, NAV_SIDE) * NAV_SIDE;
+        tasks[block] = task_of(state, first + wrap_once(cols.first_block + block, NAV_SIDE));
+    }
+    while (col < NAV_SIDE)
+    {
+        const int32_t end = end_of_task(tasks, col);
+        const nav_patch_t patch = patch_of_blocks(&rows, &cols, row, col, end);
 
-        for (int32_t col = 0; col < NAV_SIDE; col++)
+        if (tasks[col] == NAV_COPY)
         {
-            const int32_t block = first + wrap_once(cols.first_block + col, NAV_SIDE);
-
-            if (state->changed_at[block] == state->surface_count)
-            {
-                const nav_patch_t patch = patch_of_block(&rows, &cols, row, col);
-
-                if (state->blocks[block].gap_count == 0U)
-                {
-                    copy(state->z_m, &patch, z_site_m);
-                }
-                else
-                {
-                    fill(state->z_m, &patch, neighbors_min, z_site_m);
-                }
-            }
+            copy(state->z_m, &patch, z_site_m);
         }
+        else if (tasks[col] == NAV_FILL)
+        {
+            fill(state->z_m, &patch, neighbors_min, z_site_m);
+        }
+        else
+        {
+            /* neither its heights nor those beside it have changed */
+        }
+        col = end;
     }
 }
 
@@ -614,11 +815,9 @@ nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
     const uint32_t total = (point_count < capacity) ? point_count : capacity;
     nav_merge_t merge = {0U, 0U};
     nav_batch_t batch;
-    uint8_t block_row[NAV_HEIGHTMAP_SIZE];
-    uint8_t block_col[NAV_HEIGHTMAP_SIZE];
 
-    list_blocks(&placing.rows, block_row);
-    list_blocks(&placing.cols, block_col);
+    list_lines(&placing.rows, NAV_SIZE, NAV_SIDE, map->rows);
+    list_lines(&placing.cols, 1, 1, map->cols);
     (void) memset(&batch, 0, sizeof(batch)); /* what no point fills is placed as well */
     for (uint32_t first = 0U; first < total; first += NAV_BATCH)
     {
@@ -629,19 +828,19 @@ nav_merge_t nav_heightmap_merge(nav_heightmap_t *map,
         place_points(&batch, &placing);
         for (uint32_t point = 0U; point < count; point++)
         {
-            const int32_t row = batch.row[point];
-            const int32_t col = batch.col[point];
+            const nav_line_t *row = &map->rows[batch.row[point]];
+            const nav_line_t *col = &map->cols[batch.col[point]];
+            const int32_t cell = row->cell + col->cell;
 
-            if ((row == NAV_OUTSIDE) || (col == NAV_OUTSIDE))
+            if (cell < 0)
             {
                 merge.outside_count += 1U;
             }
             else
             {
-                map->is_changed[((int32_t) block_row[row] * NAV_SIDE) + (int32_t) block_col[col]] =
-                    1U;
-                merge.merged_count += add_to_cell(&map->cells[(row * NAV_SIZE) + col],
-                                                  batch.down_m[point], time_s, image_id);
+                map->is_changed[row->block + col->block] = 1U;
+                merge.merged_count +=
+                    add_to_cell(&map->cells[cell], batch.down_m[point], time_s, image_id);
             }
         }
     }
@@ -670,7 +869,10 @@ void nav_heightmap_surface(nav_heightmap_t *map,
     clear_border(state->z_m);
     renew(map, time_s, params->heightmap_expiry_s, state);
     stamp(map->is_changed, state);
-    fill_stamped(map, state, params->surface_fill_neighbors, surface->z_site_m);
+    for (int32_t row = 0; row < NAV_SIDE; row++)
+    {
+        fill_row(map, state, params->surface_fill_neighbors, row, surface->z_site_m);
+    }
     (void) memset(map->is_changed, 0, sizeof(map->is_changed));
 }
 

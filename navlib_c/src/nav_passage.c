@@ -126,8 +126,8 @@ static void find_obstacles(nav_cost_cell_t *cell,
     const nav_obstacle_limits_t limits = obstacle_limits(params);
     const double per_row_m = (double) cell->plane_dz_dx * cell_m;
     const double per_col_m = (double) cell->plane_dz_dy * cell_m;
-    cell->belly_obstacles = 0U;
-    cell->wheel_obstacles = 0U;
+    uint32_t belly = 0U;
+    uint32_t wheel = 0U;
     for (int32_t row = 0; row < SIDE; row++)
     {
         for (int32_t col = 0; col < SIDE; col++)
@@ -137,13 +137,13 @@ static void find_obstacles(nav_cost_cell_t *cell,
                                 (((double) row - MIDDLE) * per_row_m) +
                                 (((double) col - MIDDLE) * per_col_m) - z_m;
             const uint32_t bit = (uint32_t) 1U << (uint32_t) ((row * SIDE) + col);
-            if (z_m < (double) NAV_SURFACE_UNKNOWN_M)
-            {
-                cell->belly_obstacles |= (up_m > limits.belly_m) ? bit : 0U;
-                cell->wheel_obstacles |= (fabs(up_m) > limits.wheel_m) ? bit : 0U;
-            }
+            const uint32_t known_bit = (z_m < (double) NAV_SURFACE_UNKNOWN_M) ? bit : 0U;
+            belly |= (up_m > limits.belly_m) ? known_bit : 0U;
+            wheel |= (fabs(up_m) > limits.wheel_m) ? known_bit : 0U;
         }
     }
+    cell->belly_obstacles = belly;
+    cell->wheel_obstacles = wheel;
 }
 
 /** Is all ground of a cell so near to its plane that nothing in it is an obstacle? */

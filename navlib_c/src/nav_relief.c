@@ -9,7 +9,8 @@
 #define MIDDLE (0.5 * ((double) NAV_CELLS_PER_COST_CELL - 1.0))
 #define NOTHING_M 1.0e9
 
-/** Relief of a costmap cell whose first heightmap cell is the given one on the surface. */
+/** Relief of a costmap cell that has a plane and whose first heightmap cell is the given one on the
+ * surface. */
 static nav_relief_cell_t relief_of(const nav_cost_cell_t *cell,
                                    const float *z_site_m,
                                    double cell_m)
@@ -34,8 +35,8 @@ static nav_relief_cell_t relief_of(const nav_cost_cell_t *cell,
         }
         plane_row_m += per_row_m;
     }
-    /* a cell that is not known lies deeper than anything */
-    if ((cell->is_known != 0U) && (below_m > (-0.5 * (double) NAV_SURFACE_UNKNOWN_M)))
+    /* a heightmap cell that is not known lies deeper than anything */
+    if (below_m > (-0.5 * (double) NAV_SURFACE_UNKNOWN_M))
     {
         relief.above_m = (float) above_m;
         relief.below_m = (float) below_m;
@@ -66,9 +67,12 @@ void nav_relief_update(nav_relief_t *relief,
             }
             else if (state->fitted_at[index] == state->surface_count)
             {
+                const nav_cost_cell_t *cell = &costmap->cells[index];
                 const int32_t first = (surface_row * NAV_HEIGHTMAP_SIZE) + surface_col;
                 relief->cells[index] =
-                    relief_of(&costmap->cells[index], &surface->z_site_m[first], surface->cell_m);
+                    (cell->is_known != 0U)
+                        ? relief_of(cell, &surface->z_site_m[first], surface->cell_m)
+                        : nothing;
             }
             else
             {

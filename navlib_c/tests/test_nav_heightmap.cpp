@@ -436,7 +436,7 @@ TEST_F(NavHeightmap, FillingAgreesWithTheDefinitionEverywhere)
 {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> heights(-1.0, 1.0);
-    for (double neighbors : {1.0, 3.0, 5.0, 8.0})
+    for (double neighbors : {1.0, 3.0, 4.5, 5.0, 8.0})
     {
         params.surface_fill_neighbors = neighbors;
         const double known_share = neighbors / 9.0;
