@@ -56,7 +56,7 @@ typedef struct
     double east_m;
     double u_m;
     double v_m;
-} place_t;
+} tile_place_t;
 
 static double affine_at(const affine_t *affine, double north_m, double east_m, double above_m)
 {
@@ -298,7 +298,7 @@ static void take(const belly_t *belly, const under_t *cell, search_t *search)
 }
 
 /** Takes a costmap cell as a whole where it leaves enough, or else to be looked at. */
-static void touch(const belly_t *belly, under_t *cell, const place_t *place, search_t *search)
+static void touch(const belly_t *belly, under_t *cell, const tile_place_t *place, search_t *search)
 {
     const nav_tile_t tile =
         nav_ground_tile(belly->ground, cell->row, cell->col, place->north_m, place->east_m);
@@ -336,7 +336,7 @@ static void find_touched(const belly_t *belly,
     search->best = 0U;
     for (int32_t row = cells->rows.first; row <= cells->rows.last; row++)
     {
-        place_t place = {.north_m = nav_ground_tile_north_m(belly->ground, row)};
+        tile_place_t place = {.north_m = nav_ground_tile_north_m(belly->ground, row)};
         for (int32_t col = cells->cols.first; col <= cells->cols.last; col++)
         {
             place.east_m = nav_ground_tile_east_m(belly->ground, col);

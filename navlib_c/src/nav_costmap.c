@@ -76,7 +76,8 @@ static double reference_height(const nav_surface_t *surface)
             z_m = is_found ? (double) first_m : 0.0;
         }
     }
-    return NAV_REFERENCE_STEP_M * floor(z_m / NAV_REFERENCE_STEP_M);
+    /* the nearest multiple: ground near the SITE origin's height does not change it back and forth */
+    return NAV_REFERENCE_STEP_M * floor((z_m / NAV_REFERENCE_STEP_M) + 0.5);
 }
 
 static int32_t table_index(const nav_window_t *window, int32_t row, int32_t col)
@@ -299,13 +300,13 @@ typedef struct
 {
     int32_t low;
     int32_t high;
-} nav_reach_t;
+} nav_range_t;
 
-static nav_reach_t reach_of(const nav_window_t *window, int32_t place)
+static nav_range_t reach_of(const nav_window_t *window, int32_t place)
 {
     const int32_t low = place - window->patch_half;
     const int32_t high = place + window->patch_half;
-    const nav_reach_t reach = {(low > 0) ? low : 0, (high < NAV_SIDE) ? high : (NAV_SIDE - 1)};
+    const nav_range_t reach = {(low > 0) ? low : 0, (high < NAV_SIDE) ? high : (NAV_SIDE - 1)};
 
     return reach;
 }
@@ -316,7 +317,7 @@ static nav_moments_t sum_strip(const nav_window_t *window,
                                int32_t row,
                                int32_t col)
 {
-    const nav_reach_t reach = reach_of(window, col);
+    const nav_range_t reach = reach_of(window, col);
     nav_moments_t strip = {0};
 
     for (int32_t other = reach.low; other <= reach.high; other++)
@@ -344,7 +345,7 @@ static void sum_strips(const nav_window_t *window, nav_costmap_state_t *state)
 /* In a row of blocks, those in whose patch there is a new block. */
 static uint64_t find_new_patches(const nav_window_t *window, int32_t row)
 {
-    const nav_reach_t reach = reach_of(window, row);
+    const nav_range_t reach = reach_of(window, row);
     uint64_t patches = 0U;
 
     for (int32_t other = reach.low; other <= reach.high; other++)
@@ -359,7 +360,7 @@ static double count_patch(const nav_window_t *window,
                           int32_t row,
                           int32_t col)
 {
-    const nav_reach_t reach = reach_of(window, row);
+    const nav_range_t reach = reach_of(window, row);
     double known_count = 0.0;
 
     for (int32_t other = reach.low; other <= reach.high; other++)
@@ -374,7 +375,7 @@ static nav_moments_t sum_patch(const nav_window_t *window,
                                int32_t row,
                                int32_t col)
 {
-    const nav_reach_t reach = reach_of(window, row);
+    const nav_range_t reach = reach_of(window, row);
     nav_moments_t patch = {0};
 
     for (int32_t other = reach.low; other <= reach.high; other++)

@@ -27,14 +27,14 @@ typedef struct
     double height;
     double roll;
     double pitch;
-} curvature_t;
+} left_out_t;
 
 /* Of the linear functions on flat ground, per square of half of what the heights span together. */
-static const curvature_t FLAT_CURVATURE = {2.0, 1.2, 0.85, 0.36, 0.58};
+static const left_out_t LEFT_OUT_FLAT = {2.0, 1.2, 0.85, 0.36, 0.58};
 
 /* Of their changes from the middle of the intervals, per half of the widest interval times that and twice
  * half of all. */
-static const curvature_t CURVATURE = {2.45, 1.46, 0.97, 0.73, 0.78};
+static const left_out_t LEFT_OUT = {2.45, 1.46, 0.97, 0.73, 0.78};
 
 /* The linkage is not settled for less than this, of places. */
 #define SETTLE_FROM_M 0.05
@@ -76,7 +76,7 @@ static heights_t heights_of(const nav_interval_t intervals[NAV_WHEELS])
 }
 
 /** The linear function of the wheel heights, in their middle. */
-static double linear(const heights_t *heights, const double per_height[NAV_WHEELS])
+static double middle_of(const heights_t *heights, const double per_height[NAV_WHEELS])
 {
     double sum = 0.0;
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
@@ -87,7 +87,7 @@ static double linear(const heights_t *heights, const double per_height[NAV_WHEEL
 }
 
 /** How far it can be from there, over the intervals. */
-static double spread(const heights_t *heights, const double per_height[NAV_WHEELS])
+static double extent_of(const heights_t *heights, const double per_height[NAV_WHEELS])
 {
     double sum = 0.0;
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
@@ -97,23 +97,23 @@ static double spread(const heights_t *heights, const double per_height[NAV_WHEEL
     return sum;
 }
 
-/** Height, roll and pitch as linear functions. */
-static void guess_state(const nav_vehicle_t *vehicle, const heights_t *heights, double state[])
+/** The state as linear functions. */
+static void linear_state(const nav_vehicle_t *vehicle, const heights_t *heights, double state[])
 {
     for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
     {
-        state[k] = linear(heights, vehicle->flat_inverse[k]);
+        state[k] = middle_of(heights, vehicle->flat_inverse[k]);
     }
 }
 
 /** The middle by linear functions: near flat ground. */
 static void place_flat(const nav_vehicle_t *vehicle, const heights_t *heights, middle_t *middle)
 {
-    guess_state(vehicle, heights, middle->state);
+    linear_state(vehicle, heights, middle->state);
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
     {
         middle->forward_m[wheel] =
-            vehicle->hub_x_m[wheel] + linear(heights, vehicle->forward_per_height[wheel]);
+            vehicle->hub_x_m[wheel] + middle_of(heights, vehicle->forward_per_height[wheel]);
         middle->right_m[wheel] = vehicle->hub_y_m[wheel];
     }
 }
@@ -122,7 +122,7 @@ static void place_flat(const nav_vehicle_t *vehicle, const heights_t *heights, m
 static bool place_settled(const nav_vehicle_t *vehicle, const heights_t *heights, middle_t *middle)
 {
     nav_linkage_t linkage;
-    guess_state(vehicle, heights, linkage.state);
+    linear_state(vehicle, heights, linkage.state);
     const bool is_settled =
         nav_vehicle_settle(vehicle, heights->middle_m, SETTLE_TOLERANCE_M, &linkage);
     for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
@@ -169,7 +169,7 @@ static void place_wheels(const nav_ground_t *ground,
                          const nav_vehicle_t *vehicle,
                          const heights_t *heights,
                          const middle_t *middle,
-                         const curvature_t *curved_m,
+                         const left_out_t *left_out_m,
                          nav_places_t *places)
 {
     const double turn = nav_places_turn(ground, places->pitch_rad);
@@ -181,21 +181,21 @@ static void place_wheels(const nav_ground_t *ground,
         nav_box_t *box = &places->wheels[wheel];
         box->u_m = (lifted_m * ground->forward_up) + (u_m - (turn * v_m));
         box->v_m = (lifted_m * ground->right_up) + (v_m + (turn * u_m));
-        box->half_u_m = spread(heights, vehicle->forward_per_height[wheel]) + curved_m->u;
+        box->half_u_m = extent_of(heights, vehicle->forward_per_height[wheel]) + left_out_m->u;
         /* the ends of the disc swing sideways as the rover turns */
-        box->half_v_m = curved_m->v + (places->reach.box_turn * vehicle->hub_height_m);
+        box->half_v_m = left_out_m->v + (places->reach.box_turn * vehicle->hub_height_m);
         nav_places_grow(&places->reach, u_m, v_m, box);
         places->height_m[wheel] = heights->middle_m[wheel];
     }
 }
 
 /** What the linear functions leave out, in all. */
-static curvature_t curved_by(const curvature_t *curvature, double square_m2)
+static left_out_t left_out_in(const left_out_t *per_m2, double square_m2)
 {
-    const curvature_t curved = {curvature->u * square_m2, curvature->v * square_m2,
-                                curvature->height * square_m2, curvature->roll * square_m2,
-                                curvature->pitch * square_m2};
-    return curved;
+    const left_out_t left_out = {per_m2->u * square_m2, per_m2->v * square_m2,
+                                 per_m2->height * square_m2, per_m2->roll * square_m2,
+                                 per_m2->pitch * square_m2};
+    return left_out;
 }
 
 void nav_places_find(const nav_ground_t *ground,
@@ -206,16 +206,16 @@ void nav_places_find(const nav_ground_t *ground,
 {
     const double (*inverse)[NAV_WHEELS] = vehicle->flat_inverse;
     const heights_t spans = heights_of(heights);
+    const left_out_t settled =
+        left_out_in(&LEFT_OUT, spans.half_max_m * (spans.half_max_m + (2.0 * spans.all_half_m)));
+    left_out_t left_out = left_out_in(&LEFT_OUT_FLAT, spans.all_half_m * spans.all_half_m);
     middle_t middle;
-    curvature_t curved = curved_by(&FLAT_CURVATURE, spans.all_half_m * spans.all_half_m);
-    const double half_m = spans.half_max_m;
-    const curvature_t settled = curved_by(&CURVATURE, half_m * (half_m + (2.0 * spans.all_half_m)));
 
     places->is_bounded = spans.all_half_m <= HALF_MAX_M;
-    if ((curved.u > SETTLE_FROM_M) && (curved.u > settled.u))
+    if ((left_out.u > SETTLE_FROM_M) && (left_out.u > settled.u))
     {
         places->is_bounded = place_settled(vehicle, &spans, &middle) && places->is_bounded;
-        curved = settled;
+        left_out = settled;
     }
     else
     {
@@ -223,12 +223,12 @@ void nav_places_find(const nav_ground_t *ground,
     }
     places->roll_rad = middle.state[NAV_LINKAGE_ROLL];
     places->pitch_rad = middle.state[NAV_LINKAGE_PITCH];
-    places->roll_half_rad = spread(&spans, inverse[NAV_LINKAGE_ROLL]) + curved.roll;
-    places->pitch_half_rad = spread(&spans, inverse[NAV_LINKAGE_PITCH]) + curved.pitch;
-    places->reach = nav_places_reach(ground, uncertainty,
-                                     spread(&spans, inverse[NAV_LINKAGE_HEIGHT]) + curved.height,
-                                     places->pitch_rad, places->pitch_half_rad);
-    place_wheels(ground, vehicle, &spans, &middle, &curved, places);
+    places->roll_half_rad = extent_of(&spans, inverse[NAV_LINKAGE_ROLL]) + left_out.roll;
+    places->pitch_half_rad = extent_of(&spans, inverse[NAV_LINKAGE_PITCH]) + left_out.pitch;
+    places->reach = nav_places_reach(
+        ground, uncertainty, extent_of(&spans, inverse[NAV_LINKAGE_HEIGHT]) + left_out.height,
+        places->pitch_rad, places->pitch_half_rad);
+    place_wheels(ground, vehicle, &spans, &middle, &left_out, places);
 }
 
 bool nav_places_hold(const nav_places_t *outer, const nav_places_t *inner)

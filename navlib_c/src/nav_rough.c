@@ -32,6 +32,9 @@
 #define BATCH_ROWS 2
 #define BATCH_COLS 4
 
+_Static_assert(((NAV_HEIGHTMAP_SIZE % BATCH_ROWS) == 0) && ((NAV_HEIGHTMAP_SIZE % BATCH_COLS) == 0),
+               "whole batches fit on the map");
+
 /** Cells around all ground that a wheel can touch: a whole number of batches. */
 typedef struct
 {
@@ -102,7 +105,7 @@ static bool cells_around(double middle, double half, int32_t step, nav_indices_t
     const int32_t first_max = NAV_HEIGHTMAP_SIZE - whole;
     cells->first = (first < first_max) ? first : first_max;
     cells->last = last;
-    return is_inside && (first_max >= 0);
+    return is_inside;
 }
 
 /** @return false where some of them are off the map */

@@ -188,7 +188,6 @@ nav_span_t nav_wheel_span(const nav_ground_t *ground, const nav_footprint_t *foo
 /** Ground under a wheel's places, line by line. Heights are of the ground, above the plane. */
 typedef struct
 {
-    int32_t first; /* line */
     uint32_t count;
     line_t lines[LINES_MAX];   /* their feet are seen from the middle of the places */
     double under_m[LINES_MAX]; /* lowest cell that the sides touch on their way to the next line, */
