@@ -63,6 +63,13 @@ typedef struct
     nav_ground_t ground;
 } nav_ace_view_t;
 
+/** What the ground says of one wheel. */
+typedef struct
+{
+    nav_box_t places; /* where the wheel was taken to be */
+    nav_interval_t height;
+} nav_ace_look_t;
+
 /** What an evaluation works on, too large for the stack. It means nothing between evaluations. */
 typedef struct
 {
@@ -70,6 +77,7 @@ typedef struct
     nav_places_t
         assumed; /* by an attempt; when those that follow lie inside, these are certified: the map
                              from places to places then has its fixed point, the settled rover, inside (Brouwer) */
+    nav_ace_look_t looks[NAV_WHEELS]; /* the last at each wheel */
     nav_interval_t heights[NAV_WHEELS];
     nav_places_t places; /* that follow from the heights */
     nav_spanned_t spanned;

@@ -57,6 +57,9 @@ void nav_places_find(const nav_ground_t *ground,
                      const nav_interval_t heights[NAV_WHEELS],
                      nav_places_t *places);
 
+/** Does a box lie inside another one? */
+bool nav_places_cover(const nav_box_t *outer, const nav_box_t *inner);
+
 /** Do all places of the wheels lie inside others? */
 bool nav_places_hold(const nav_places_t *outer, const nav_places_t *inner);
 

@@ -155,27 +155,46 @@ static bool wheel_closely(const nav_ace_view_t *view,
     return is_known;
 }
 
-/** Heights of the wheels at their places: rough where they span little enough. @return false when nothing is
- * known under one of them */
-static bool wheel_heights(const nav_ace_view_t *view,
-                          const nav_places_t *places,
-                          double close_from_m,
-                          nav_interval_t heights[NAV_WHEELS])
+/**
+ * Looks at a wheel: roughly where it could be elsewhere than at the last look, closely where its height then spans
+ * more than it should. What holds for all places of a look holds for fewer, too.
+ * @return false when nothing is known under it
+ */
+static bool look_at(const nav_ace_view_t *view,
+                    const nav_places_t *places,
+                    uint32_t wheel,
+                    double close_from_m,
+                    nav_ace_look_t *look)
 {
-    const double radius_m = view->params->wheel_radius_m;
+    const nav_box_t *box = &places->wheels[wheel];
+    bool is_known = true;
+    if (!nav_places_cover(&look->places, box))
+    {
+        look->places = *box;
+        look->height = nav_rough_interval(&view->ground, box, places->height_m[wheel],
+                                          view->params->wheel_radius_m);
+    }
+    if ((look->height.high_m - look->height.low_m) > close_from_m)
+    {
+        look->places = *box;
+        is_known = wheel_closely(view, places, wheel, &look->height);
+    }
+    return is_known;
+}
+
+/** Heights of the wheels at places. @return false when nothing is known under one of them */
+static bool find_heights(nav_ace_work_t *work, const nav_places_t *places, double close_from_m)
+{
     const double lean_rad = fabs(places->roll_rad) + places->roll_half_rad;
+    const double lean_m = 0.5 * work->view.params->wheel_radius_m * squared(lean_rad);
     bool is_known = true;
     for (uint32_t wheel = 0U; (wheel < (uint32_t) NAV_WHEELS) && is_known; wheel++)
     {
-        nav_interval_t *hub = &heights[wheel];
-        *hub = nav_rough_interval(&view->ground, &places->wheels[wheel], places->height_m[wheel],
-                                  radius_m);
-        if ((hub->high_m - hub->low_m) > close_from_m)
-        {
-            is_known = wheel_closely(view, places, wheel, hub);
-        }
+        nav_ace_look_t *look = &work->looks[wheel];
+        is_known = look_at(&work->view, places, wheel, close_from_m, look);
         /* a wheel that leans with the body stands lower over what it touches */
-        hub->low_m -= 0.5 * radius_m * squared(lean_rad);
+        work->heights[wheel].low_m = look->height.low_m - lean_m;
+        work->heights[wheel].high_m = look->height.high_m;
     }
     return is_known;
 }
@@ -466,7 +485,7 @@ static void bound_states(const nav_ace_view_t *view,
 static void tighten(nav_ace_work_t *work, double close_from_m, nav_ace_bounds_t *bounds)
 {
     const nav_ace_view_t *view = &work->view;
-    if (wheel_heights(view, &work->places, close_from_m, work->heights) &&
+    if (find_heights(work, &work->places, close_from_m) &&
         span_states(view, work->heights, &work->spanned))
     {
         find_places(view, work->heights, &work->places);
@@ -483,6 +502,16 @@ typedef enum
     CERTIFIED
 } finding_t;
 
+/** As if no wheel had been looked at: boxes of less than no extent cover none. */
+static void forget_looks(nav_ace_work_t *work)
+{
+    static const nav_box_t NOWHERE = {0.0, 0.0, -1.0, -1.0};
+    for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
+    {
+        work->looks[wheel].places = NOWHERE;
+    }
+}
+
 /** Looks for consistent places: roughly first, then closely. */
 static finding_t find_consistent(nav_ace_work_t *work, nav_ace_bounds_t *bounds)
 {
@@ -490,6 +519,7 @@ static finding_t find_consistent(nav_ace_work_t *work, nav_ace_bounds_t *bounds)
     finding_t finding = STANDING;
     bool is_bounded = true;
     first_heights(view, LEAST_HALF_M, work->heights);
+    forget_looks(work);
     for (uint32_t k = 0U; (k < ATTEMPTS) && is_bounded && (finding == STANDING); k++)
     {
         if (k > 0U)
@@ -498,7 +528,7 @@ static finding_t find_consistent(nav_ace_work_t *work, nav_ace_bounds_t *bounds)
         }
         find_places(view, work->heights, &work->assumed);
         is_bounded = work->assumed.is_bounded;
-        if (!wheel_heights(view, &work->assumed, CLOSE_FROM_M[k], work->heights))
+        if (!find_heights(work, &work->assumed, CLOSE_FROM_M[k]))
         {
             finding = NOT_STANDING;
         }

@@ -231,15 +231,18 @@ void nav_places_find(const nav_ground_t *ground,
     place_wheels(ground, vehicle, &spans, &middle, &left_out, places);
 }
 
+bool nav_places_cover(const nav_box_t *outer, const nav_box_t *inner)
+{
+    return ((fabs(inner->u_m - outer->u_m) + inner->half_u_m) <= outer->half_u_m) &&
+           ((fabs(inner->v_m - outer->v_m) + inner->half_v_m) <= outer->half_v_m);
+}
+
 bool nav_places_hold(const nav_places_t *outer, const nav_places_t *inner)
 {
     bool is_inside = outer->is_bounded && inner->is_bounded;
     for (uint32_t wheel = 0U; (wheel < (uint32_t) NAV_WHEELS) && is_inside; wheel++)
     {
-        const nav_box_t *out = &outer->wheels[wheel];
-        const nav_box_t *in = &inner->wheels[wheel];
-        is_inside = ((fabs(in->u_m - out->u_m) + in->half_u_m) <= out->half_u_m) &&
-                    ((fabs(in->v_m - out->v_m) + in->half_v_m) <= out->half_v_m);
+        is_inside = nav_places_cover(&outer->wheels[wheel], &inner->wheels[wheel]);
     }
     return is_inside;
 }
