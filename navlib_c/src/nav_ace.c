@@ -3,10 +3,10 @@
  * @file nav_ace.c
  * @brief Approximate Clearance Evaluation relative to the local ground plane.
  *
- * All in the plane frame of nav_ground.h. The rover is assumed to stay within a range of states; from
- * that follow the places of its wheels, from those the intervals of their heights, and from those,
- * through the exact linkage, the states it can take. If these lie within the assumed range, they bound
- * the settled rover.
+ * All in the plane frame of nav_ground.h. The wheels are assumed to be within some places; from these
+ * follow the intervals of their heights, and from those the places where the wheels can be. If they lie
+ * within the assumed ones, the settled rover is there, and the states that the exact linkage can take
+ * with such heights bound it.
  */
 #include "nav_ace.h"
 
@@ -61,7 +61,7 @@ static const double TIGHTEN_FROM_M[TIGHTENINGS] = {0.05, 0.0, 0.0};
 #define WIDENING_STEP 0.15
 
 /* The nearest cells say little where they are this far off the plane. */
-#define FIRST_HEIGHT_MAX_M 0.3
+#define FIRST_HEIGHT_MAX_M 0.28
 
 static double squared(double x)
 {
@@ -512,34 +512,39 @@ static void forget_looks(nav_ace_work_t *work)
     }
 }
 
-/** Looks for consistent places: roughly first, then closely. */
-static finding_t find_consistent(nav_ace_work_t *work, nav_ace_bounds_t *bounds)
+/** What an attempt comes to, at the assumed places. */
+static finding_t attempt(nav_ace_work_t *work, uint32_t k, nav_ace_bounds_t *bounds)
 {
     const nav_ace_view_t *view = &work->view;
-    finding_t finding = STANDING;
-    bool is_bounded = true;
-    first_heights(view, LEAST_HALF_M, work->heights);
-    forget_looks(work);
-    for (uint32_t k = 0U; (k < ATTEMPTS) && is_bounded && (finding == STANDING); k++)
+    finding_t finding = NOT_STANDING;
+    if (find_heights(work, &work->assumed, CLOSE_FROM_M[k]))
     {
-        if (k > 0U)
-        {
-            widen_heights(WIDENING_FIRST + (WIDENING_STEP * (double) k), work->heights);
-        }
-        find_places(view, work->heights, &work->assumed);
-        is_bounded = work->assumed.is_bounded;
-        if (!find_heights(work, &work->assumed, CLOSE_FROM_M[k]))
-        {
-            finding = NOT_STANDING;
-        }
-        else if ((k == 0U) && (widest_m(work->heights) > SUSPECT_M) && is_dropping(view, bounds))
+        find_places(view, work->heights, &work->places);
+        finding = nav_places_hold(&work->assumed, &work->places) ? CERTIFIED : STANDING;
+        if ((k == 0U) && (widest_m(work->heights) > SUSPECT_M) && is_dropping(view, bounds))
         {
             finding = DROPPING;
         }
-        else
+    }
+    return finding;
+}
+
+/** Looks for consistent places: roughly first, then closely. Leaves the last that were assumed. */
+static finding_t find_consistent(nav_ace_work_t *work, nav_ace_bounds_t *bounds)
+{
+    const nav_ace_view_t *view = &work->view;
+    forget_looks(work);
+    first_heights(view, LEAST_HALF_M, work->heights);
+    find_places(view, work->heights, &work->assumed);
+    finding_t finding = attempt(work, 0U, bounds);
+    for (uint32_t k = 1U; (k < ATTEMPTS) && (finding == STANDING) && work->places.is_bounded; k++)
+    {
+        widen_heights(WIDENING_FIRST + (WIDENING_STEP * (double) k), work->heights);
+        find_places(view, work->heights, &work->places);
+        if (work->places.is_bounded)
         {
-            find_places(view, work->heights, &work->places);
-            finding = nav_places_hold(&work->assumed, &work->places) ? CERTIFIED : STANDING;
+            work->assumed = work->places;
+            finding = attempt(work, k, bounds);
         }
     }
     return finding;
@@ -602,8 +607,11 @@ static void bound_pose(nav_ace_work_t *work, nav_ace_bounds_t *bounds)
     }
     else
     {
-        bound_states(view, &work->places, finding == CERTIFIED, &work->spanned, bounds);
-        if (finding == CERTIFIED)
+        /* places that are not certified could be anywhere */
+        const bool is_certified = finding == CERTIFIED;
+        bound_states(view, is_certified ? &work->places : &work->assumed, is_certified,
+                     &work->spanned, bounds);
+        if (is_certified)
         {
             tighten_refused(work, bounds);
         }

@@ -348,6 +348,23 @@ TEST(Ace, on_very_rough_ground_nothing_is_safe_and_what_is_certified_is_finite)
     }
 }
 
+TEST(Ace, towers_and_shafts_are_refused_at_once)
+{
+    std::mt19937 random(3);
+    for (double height_m : {3.0, 50.0, 900.0})
+    {
+        Scene scene;
+        scene.show(
+            [&](double, double)
+            { return (random() % 60U == 0U) ? height_m * ((random() % 2U) ? 1.0 : -1.0) : 0.0; });
+        for (double yaw = -3.0; yaw < 3.0; yaw += 0.2)
+        {
+            /* a box as high as that would hold millions of lines of the grid */
+            EXPECT_NE(NAV_REASON_NONE, scene.ace(0.3, -0.4, yaw).reason) << height_m << " " << yaw;
+        }
+    }
+}
+
 TEST(Ace, yaw_uncertainty_widens_the_bound_of_tilt_on_a_slope_with_rocks)
 {
     Scene scene(refuse_all);
