@@ -160,11 +160,11 @@ static bool wheel_closely(const nav_ace_view_t *view,
  * more than it should. What holds for all places of a look holds for fewer, too.
  * @return false when nothing is known under it
  */
-static bool look_at(const nav_ace_view_t *view,
-                    const nav_places_t *places,
-                    uint32_t wheel,
-                    double close_from_m,
-                    nav_ace_look_t *look)
+static bool look_at_wheel(const nav_ace_view_t *view,
+                          const nav_places_t *places,
+                          uint32_t wheel,
+                          double close_from_m,
+                          nav_ace_look_t *look)
 {
     const nav_box_t *box = &places->wheels[wheel];
     bool is_known = true;
@@ -191,7 +191,7 @@ static bool find_heights(nav_ace_work_t *work, const nav_places_t *places, doubl
     for (uint32_t wheel = 0U; (wheel < (uint32_t) NAV_WHEELS) && is_known; wheel++)
     {
         nav_ace_look_t *look = &work->looks[wheel];
-        is_known = look_at(&work->view, places, wheel, close_from_m, look);
+        is_known = look_at_wheel(&work->view, places, wheel, close_from_m, look);
         /* a wheel that leans with the body stands lower over what it touches */
         work->heights[wheel].low_m = look->height.low_m - lean_m;
         work->heights[wheel].high_m = look->height.high_m;
