@@ -32,10 +32,7 @@
 #define BATCH_ROWS 2
 #define BATCH_COLS 4
 
-_Static_assert(((NAV_HEIGHTMAP_SIZE % BATCH_ROWS) == 0) && ((NAV_HEIGHTMAP_SIZE % BATCH_COLS) == 0),
-               "whole batches fit on the map");
-
-/** Cells around all ground that a wheel can touch: a whole number of batches. */
+/** Cells around all ground that a wheel can touch, a batch at least. */
 typedef struct
 {
     nav_indices_t rows;
@@ -45,9 +42,9 @@ typedef struct
 /** A number that changes evenly over the grid. */
 typedef struct
 {
-    float at[BATCH_COLS]; /* in the first row of the first batch of a window */
+    float at[BATCH_COLS]; /* in the first row and columns of a window */
     float per_row;
-    float per_batch; /* from batch to batch of a row */
+    float per_col;
 } ramp_t;
 
 /** A wheel over the cells of a window. */
@@ -91,20 +88,19 @@ static float twice_beyond(float distance_m)
     return distance_m + fabsf(distance_m);
 }
 
-/** Rows or columns around a range of places, a whole number of steps. @return false where some are off the
+/** Rows or columns around a range of places, a batch of them at least. @return false where some are off the
  * map */
-static bool cells_around(double middle, double half, int32_t step, nav_indices_t *cells)
+static bool cells_around(double middle, double half, int32_t batch, nav_indices_t *cells)
 {
     const double low = middle - half;
     const double high = middle + half;
     const bool is_inside = (low >= 0.0) && (high < (double) (NAV_HEIGHTMAP_SIZE - 1));
     const int32_t first = is_inside ? (int32_t) low : 0;
     const int32_t last = is_inside ? ((int32_t) high + 1) : 0;
-    const int32_t whole = (((last - first) / step) + 1) * step;
-    /* the last step must not leave the map either: then all begin earlier */
-    const int32_t first_max = NAV_HEIGHTMAP_SIZE - whole;
+    const int32_t first_max = NAV_HEIGHTMAP_SIZE - batch;
     cells->first = (first < first_max) ? first : first_max;
-    cells->last = last;
+    const int32_t last_min = (cells->first + batch) - 1;
+    cells->last = (last > last_min) ? last : last_min;
     return is_inside;
 }
 
@@ -141,7 +137,7 @@ static nav_box_t feet_of(const nav_ground_t *ground,
 
 static ramp_t ramp_of(double first, double per_row, double per_col)
 {
-    ramp_t ramp = {{0.0F}, (float) per_row, (float) (per_col * (double) BATCH_COLS)};
+    ramp_t ramp = {{0.0F}, (float) per_row, (float) per_col};
     for (int32_t k = 0; k < BATCH_COLS; k++)
     {
         ramp.at[k] = (float) (first + (per_col * (double) k));
@@ -198,7 +194,7 @@ static inline void take_cell(
     extremes->bottom_m[k] = nav_min_f(extremes->bottom_m[k], above_m);
 }
 
-/** Takes a batch of cells, given its first cell and what to add to the first row of the first batch. */
+/** Takes a batch of cells, given its first cell and what to add to the first of all. */
 static void take_batch(const view_t *view,
                        const float *z_site_m,
                        const offset_t *offset,
@@ -213,13 +209,20 @@ static void take_batch(const view_t *view,
     }
 }
 
+/** What to add in a batch, given how many rows and columns it is from the first. */
+static float offset_of(const ramp_t *ramp, int32_t rows, int32_t cols)
+{
+    return ((float) rows * ramp->per_row) + ((float) cols * ramp->per_col);
+}
+
 static extremes_t extremes_of(const nav_ground_t *ground,
                               const view_t *view,
                               const window_t *window)
 {
     const float none_m = (float) NAV_ETA_NONE;
+    const int32_t row_max = window->rows.last - (BATCH_ROWS - 1);
+    const int32_t col_max = window->cols.last - (BATCH_COLS - 1);
     extremes_t extremes;
-    offset_t row_offset = {0.0F, 0.0F, 0.0F};
     for (int32_t k = 0; k < BATCH_COLS; k++)
     {
         extremes.high_m[k] = -none_m;
@@ -227,20 +230,21 @@ static extremes_t extremes_of(const nav_ground_t *ground,
         extremes.top_m[k] = -none_m;
         extremes.bottom_m[k] = none_m;
     }
+    /* the last batch ends where the window does, even if it has some of the one before */
     for (int32_t row = window->rows.first; row <= window->rows.last; row += BATCH_ROWS)
     {
-        const float *z_site_m = &ground->surface->z_site_m[row * NAV_HEIGHTMAP_SIZE];
-        offset_t offset = row_offset;
+        const int32_t at_row = (row < row_max) ? row : row_max;
+        const float *z_site_m = &ground->surface->z_site_m[at_row * NAV_HEIGHTMAP_SIZE];
+        const int32_t rows = at_row - window->rows.first;
         for (int32_t col = window->cols.first; col <= window->cols.last; col += BATCH_COLS)
         {
-            take_batch(view, &z_site_m[col], &offset, &extremes);
-            offset.plane_m += view->plane_m.per_batch;
-            offset.u_m += view->u_m.per_batch;
-            offset.v_m += view->v_m.per_batch;
+            const int32_t at_col = (col < col_max) ? col : col_max;
+            const int32_t cols = at_col - window->cols.first;
+            const offset_t offset = {offset_of(&view->plane_m, rows, cols),
+                                     offset_of(&view->u_m, rows, cols),
+                                     offset_of(&view->v_m, rows, cols)};
+            take_batch(view, &z_site_m[at_col], &offset, &extremes);
         }
-        row_offset.plane_m += (float) BATCH_ROWS * view->plane_m.per_row;
-        row_offset.u_m += (float) BATCH_ROWS * view->u_m.per_row;
-        row_offset.v_m += (float) BATCH_ROWS * view->v_m.per_row;
     }
     return extremes;
 }
