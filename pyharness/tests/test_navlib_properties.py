@@ -120,11 +120,16 @@ def test_a_world_turned_by_a_quarter_has_the_same_bounds(seed):
     certain = np.zeros((300, 2))
     plain_bounds = ace_bounds(navlib_on(terrain_of(z_m)), poses, certain)
     turned_bounds = ace_bounds(navlib_on(terrain_of(z_m.T[::-1])), turned, certain)
+    assert np.array_equal(plain_bounds["reason"], turned_bounds["reason"])
+    assert np.array_equal(plain_bounds["is_certified"], turned_bounds["is_certified"])
     for name in plain_bounds.dtype.names:
         if name.endswith("_rad") or name in ("wheel_drop_max_m", "z_min_site_m", "z_max_site_m"):
-            # a cell on the border of a box can fall to either side by rounding
-            apart = np.abs(plain_bounds[name] - turned_bounds[name]) > 1e-6
-            assert np.sum(apart) <= 3, name
+            # rough looks take whole batches, of a few columns but two rows: where these are more
+            # than the wheel needs, bounds differ a little; a cell on the border of a box can
+            # fall to either side by rounding
+            apart = np.abs(plain_bounds[name] - turned_bounds[name])
+            assert np.median(apart) < 1e-6, name
+            assert np.sum(apart > 1e-3) <= 15, name
 
 
 @quick
