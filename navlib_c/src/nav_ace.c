@@ -23,7 +23,7 @@
 
 /* Attempts to find places of the wheels that are consistent: first around where the nearest cells put
  * them, then each around the heights of the attempt before. */
-#define ATTEMPTS 5U
+#define ATTEMPTS 3U
 #define GROWTH_MIN_M 0.02
 #define GROWTH_MAX_M 0.8 /* places that far around certify nothing */
 
@@ -35,7 +35,7 @@
 #define CELLS_AROUND 1.42
 
 /* Attempt by attempt: wheels whose rough heights span more are looked at closely. */
-static const double CLOSE_FROM_M[ATTEMPTS] = {NAV_ETA_NONE, 0.2, 0.1, 0.05, 0.0};
+static const double CLOSE_FROM_M[ATTEMPTS] = {NAV_ETA_NONE, 0.2, 0.05};
 
 /* Where rough heights span more than this, wheel drop is looked at first, while the heights of the wheels
  * are within this of the nearest cells. */

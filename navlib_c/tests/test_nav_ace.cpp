@@ -257,6 +257,17 @@ TEST(Ace, unknown_ground_under_wheels_or_belly_is_refused)
     EXPECT_LT(belly.wheel_unknown, 0.5);
 }
 
+TEST(Ace, a_wheel_over_a_shadow_of_any_size_is_refused_as_over_unknown_ground)
+{
+    for (double radius_m = 0.46; radius_m < 0.66; radius_m += 0.01)
+    {
+        Scene scene;
+        scene.show(flat, [&](double x, double y)
+                   { return (std::hypot(x - 1.435, y + 0.8) < radius_m) ? 1.0 : 0.0; });
+        EXPECT_EQ(NAV_REASON_UNKNOWN, scene.ace(0.25, 0.25, 0.0).reason) << radius_m;
+    }
+}
+
 TEST(Ace, a_shadow_behind_a_stone_is_tolerated)
 {
     Scene scene;
@@ -344,6 +355,37 @@ TEST(Ace, on_very_rough_ground_nothing_is_safe_and_what_is_certified_is_finite)
             EXPECT_NE(static_cast<uint32_t>(NAV_REASON_NONE), bounds.reason);
             EXPECT_TRUE(nav_isfinite(bounds.clearance_min_m));
             EXPECT_TRUE(nav_isfinite(bounds.tilt_max_rad));
+        }
+    }
+}
+
+TEST(Ace, on_ground_of_any_roughness_with_holes_bounds_are_finite)
+{
+    std::mt19937 random(8);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    for (double most_m : {0.1, 0.2, 0.3, 0.4})
+    {
+        Scene scene;
+        /* cells of half a metre, some of them unknown */
+        scene.show(
+            [&](double x, double y)
+            {
+                const auto cell = static_cast<unsigned>((static_cast<int>(2.0 * (x + 20.0)) * 100) +
+                                                        static_cast<int>(2.0 * (y + 20.0)));
+                std::mt19937 height(cell);
+                return most_m * unit(height);
+            },
+            [&](double, double) { return (random() % 8U == 0U) ? 1.0 : 0.0; });
+        for (int k = 0; k < 800; k++)
+        {
+            const nav_uncertainty_t uncertainty = {0.1 * unit(random), 0.05 * unit(random), 0.0};
+            const nav_ace_bounds_t bounds =
+                scene.ace(16.0 * unit(random) - 8.0, 16.0 * unit(random) - 8.0, 6.0 * unit(random),
+                          uncertainty);
+            EXPECT_TRUE(nav_isfinite(bounds.clearance_min_m));
+            EXPECT_TRUE(nav_isfinite(bounds.tilt_max_rad));
+            EXPECT_TRUE(nav_isfinite(bounds.wheel_drop_max_m));
+            EXPECT_TRUE((bounds.reason != NAV_REASON_NONE) || (bounds.is_certified == 1U));
         }
     }
 }
