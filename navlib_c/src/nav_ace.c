@@ -24,7 +24,6 @@
 /* Attempts to find places of the wheels that are consistent: first around where the nearest cells put
  * them, then each around the heights of the attempt before. */
 #define ATTEMPTS 3U
-#define GROWTH_MIN_M 0.02
 #define GROWTH_MAX_M 0.8 /* places that far around certify nothing */
 
 /* Single heightmap cells are looked at where coarse heights would move a wheel's places on a slope by
@@ -221,7 +220,7 @@ static void drop_bounds(const nav_ace_view_t *view,
 
 /* ------------------------------------------------------------------ places of the wheels */
 
-/** The places that follow from heights of the wheels; never quite without extent. */
+/** The places that follow from heights of the wheels; no larger than what can be looked at. */
 static void find_places(const nav_ace_view_t *view,
                         const nav_interval_t heights[NAV_WHEELS],
                         nav_places_t *places)
@@ -230,9 +229,10 @@ static void find_places(const nav_ace_view_t *view,
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
     {
         nav_box_t *box = &places->wheels[wheel];
-        box->half_u_m = nav_max(box->half_u_m, GROWTH_MIN_M);
         places->is_bounded =
             places->is_bounded && (box->half_u_m < GROWTH_MAX_M) && (box->half_v_m < GROWTH_MAX_M);
+        box->half_u_m = nav_min(box->half_u_m, GROWTH_MAX_M);
+        box->half_v_m = nav_min(box->half_v_m, GROWTH_MAX_M);
     }
 }
 
@@ -486,7 +486,7 @@ static void tighten(nav_ace_work_t *work, double close_from_m, nav_ace_bounds_t 
 {
     const nav_ace_view_t *view = &work->view;
     if (find_heights(work, &work->places, close_from_m) &&
-        span_states(view, work->heights, &work->spanned))
+        nav_states_solve(view->vehicle, work->heights, &work->spanned))
     {
         find_places(view, work->heights, &work->places);
         bound_states(view, &work->places, true, &work->spanned, bounds);
