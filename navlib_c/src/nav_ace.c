@@ -43,11 +43,11 @@ static const double CLOSE_FROM_M[ATTEMPTS] = {NAV_ETA_NONE, 0.2, 0.05};
 
 /* Bounds that refuse a pose are tightened this often at most, while clearance and wheel drop are no further
  * from their limits than this the first time, then than what the last time has gained, and than this. */
-#define TIGHTENINGS 3U
-static const double TIGHTEN_FROM_M[TIGHTENINGS] = {0.05, 0.0, 0.0};
+#define TIGHTENINGS 4U
+static const double TIGHTEN_FROM_M[TIGHTENINGS] = {0.05, 0.0, 0.0, 0.0};
 #define FIRST_GAIN_M 0.08
 #define FIRST_DROP_GAIN_M 0.4
-#define LEAST_GAIN_M 0.02
+#define LEAST_GAIN_M 0.01
 #define LEAST_DROP_GAIN_M 0.05
 
 /* Half of what the height of a wheel is assumed to span at least. Between walls a rover can stand in more
