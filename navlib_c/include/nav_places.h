@@ -27,7 +27,7 @@ typedef struct
 /** Where the wheels can be, and how the body leans meanwhile. */
 typedef struct
 {
-    nav_box_t wheels[NAV_WHEELS]; /* their lowest points: hubs fore and aft, feet sideways */
+    nav_box_t wheels[NAV_WHEELS]; /* hubs fore and aft, what they touch sideways */
     double height_m[NAV_WHEELS];  /* in the middle */
     double roll_rad;              /* relative to the plane, in the middle */
     double roll_half_rad;

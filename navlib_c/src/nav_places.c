@@ -174,6 +174,10 @@ static void place_wheels(const nav_ground_t *ground,
 {
     const double turn = nav_places_turn(ground, places->pitch_rad);
     const double lifted_m = middle->state[NAV_LINKAGE_HEIGHT] / ground->cos_slope;
+    /* what a leaning wheel touches above its lowest point is beside it, up to the height of its hub */
+    const double hub_m = vehicle->hub_height_m;
+    const double lean_min_m = nav_min(places->roll_rad - places->roll_half_rad, 0.0) * hub_m;
+    const double lean_max_m = nav_max(places->roll_rad + places->roll_half_rad, 0.0) * hub_m;
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
     {
         const double u_m = middle->forward_m[wheel];
@@ -183,7 +187,9 @@ static void place_wheels(const nav_ground_t *ground,
         box->v_m = (lifted_m * ground->right_up) + (v_m + (turn * u_m));
         box->half_u_m = extent_of(heights, vehicle->forward_per_height[wheel]) + left_out_m->u;
         /* the ends of the disc swing sideways as the rover turns */
-        box->half_v_m = left_out_m->v + (places->reach.box_turn * vehicle->hub_height_m);
+        box->half_v_m = left_out_m->v + (places->reach.box_turn * hub_m);
+        box->v_m += 0.5 * (lean_max_m + lean_min_m);
+        box->half_v_m += 0.5 * (lean_max_m - lean_min_m);
         nav_places_grow(&places->reach, u_m, v_m, box);
         places->height_m[wheel] = heights->middle_m[wheel];
     }

@@ -246,10 +246,38 @@ static void raise_at(const track_t *track, double half_m, const touch_t *touch, 
 }
 
 /**
- * Raises the highest hub by a stretch of ground, over all places within half_m of the middle: by its
- * ends, and by where the disc is parallel to it. Outside the places that is at
- * radius * slope / sqrt(1 + slope^2) from the nearest of them.
+ * Where a stretch of ground, raised by its bulge and cut off at its highest cell, lifts a hub most. It is where
+ * the disc is parallel to it: outside the places, that is at radius * slope / sqrt(1 + slope^2) from the nearest
+ * of them. Where the ground is cut off before that, it is as near to the places as it is cut off.
+ * @param ends_m  the ends of the stretch, @param half_m  the places are within this of the middle
  */
+static touch_t summit_of(const stretch_t *stretch,
+                         const nav_interval_t *ends_m,
+                         double half_m,
+                         double radius_m)
+{
+    const touch_t *from = &stretch->from;
+    const double rise_m = stretch->to.eta_m - from->eta_m;
+    const double slope = ((stretch->to.u_m < from->u_m) ? -rise_m : rise_m) /
+                         nav_max(ends_m->high_m - ends_m->low_m, PARALLEL);
+    const double upright = 1.0 / sqrt(1.0 + (slope * slope));
+    const double outward_m = half_m + (radius_m * fabs(slope) * upright);
+    touch_t summit = {
+        nav_clamp((slope < 0.0) ? -outward_m : outward_m, ends_m->low_m, ends_m->high_m), 0.0};
+    summit.eta_m = from->eta_m + (slope * (summit.u_m - from->u_m)) + stretch->bulge_m;
+    if (summit.eta_m > stretch->over_m)
+    {
+        /* how far back from there it is cut off */
+        const double back_m = (summit.eta_m - stretch->over_m) / nav_max(fabs(slope), PARALLEL);
+        const double cut_m = (slope < 0.0) ? (summit.u_m + back_m) : (summit.u_m - back_m);
+        summit.u_m = nav_clamp(0.0, nav_min(summit.u_m, cut_m), nav_max(summit.u_m, cut_m));
+        summit.u_m = nav_clamp(summit.u_m, ends_m->low_m, ends_m->high_m);
+        summit.eta_m = stretch->over_m;
+    }
+    return summit;
+}
+
+/** Raises the highest hub by a stretch of ground, over all places within half_m of the middle. */
 static void raise_along(const track_t *track,
                         double half_m,
                         const stretch_t *stretch,
@@ -258,24 +286,16 @@ static void raise_along(const track_t *track,
     const double radius_m = track->radius_m;
     const touch_t *from = &stretch->from;
     const touch_t *to = &stretch->to;
-    const double first_m = nav_min(from->u_m, to->u_m);
-    const double last_m = nav_max(from->u_m, to->u_m);
-    const double near_m = nav_max(nav_max(first_m, -last_m) - half_m, 0.0);
+    const nav_interval_t ends_m = {nav_min(from->u_m, to->u_m), nav_max(from->u_m, to->u_m)};
+    const double near_m = nav_max(nav_max(ends_m.low_m, -ends_m.high_m) - half_m, 0.0);
     const double top_m =
         nav_min(nav_max(from->eta_m, to->eta_m) + stretch->bulge_m, stretch->over_m);
     raise_at(track, half_m, from, high_m);
     raise_at(track, half_m, to, high_m);
     if ((near_m < radius_m) && ((top_m + disc_m(radius_m, near_m)) > *high_m))
     {
-        const double rise_m = to->eta_m - from->eta_m;
-        const double slope =
-            ((to->u_m < from->u_m) ? -rise_m : rise_m) / nav_max(last_m - first_m, PARALLEL);
-        const double upright = 1.0 / sqrt(1.0 + (slope * slope));
-        const double outward_m = half_m + (radius_m * fabs(slope) * upright);
-        const double u_m = nav_clamp((slope < 0.0) ? -outward_m : outward_m, first_m, last_m);
-        const double along_m = nav_max(fabs(u_m) - half_m, 0.0);
-        const double eta_m = from->eta_m + (slope * (u_m - from->u_m)) + stretch->bulge_m;
-        *high_m = nav_max(*high_m, nav_min(eta_m, stretch->over_m) + disc_m(radius_m, along_m));
+        const touch_t summit = summit_of(stretch, &ends_m, half_m, radius_m);
+        raise_at(track, half_m, &summit, high_m);
     }
 }
 

@@ -139,6 +139,23 @@ TEST(Places, uncertainty_widens_them_and_yaw_those_far_from_the_middle_more)
     EXPECT_LT(front.half_v_m, 0.1);
 }
 
+TEST(Places, a_wheel_that_leans_touches_beside_its_lowest_point)
+{
+    Scene scene;
+    const nav_vehicle_t rover = vehicle();
+    std::array<nav_interval_t, NAV_WHEELS> heights = all_at(0.0, 0.0);
+    for (int wheel = 0; wheel < NAV_WHEELS / 2; wheel++)
+    {
+        heights[wheel] = {0.1, 0.1}; /* the left side is raised: it leans to the right */
+    }
+    const nav_places_t places = places_of(ground_of(scene, 0.0, 0.0), heights);
+    EXPECT_GT(places.roll_rad, 0.03);
+    const nav_box_t &middle = places.wheels[1];
+    EXPECT_LE(middle.v_m - middle.half_v_m, rover.hub_y_m[1]);
+    EXPECT_GE(middle.v_m + middle.half_v_m,
+              rover.hub_y_m[1] + places.roll_rad * rover.hub_height_m);
+}
+
 TEST(Places, heights_too_different_are_not_bounded)
 {
     Scene scene;

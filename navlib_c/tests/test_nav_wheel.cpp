@@ -83,6 +83,27 @@ TEST(Wheel, a_stone_beside_it_is_not_under_it)
     EXPECT_NEAR(plane_m + 0.2, nav_wheel_interval(&ground, &under, &above, RADIUS_M).high_m, 0.02);
 }
 
+TEST(Wheel, a_ridge_that_it_crosses_between_two_lines_carries_it)
+{
+    /* one row of cells stands out; on these headings the wheel meets it between two lines of the grid */
+    Scene scene;
+    scene.show([](double x, double) { return (std::fabs(x - 1.05) < 0.04) ? 0.05 : 0.0; });
+    const nav_interval_t above = {-0.02, 0.07};
+    for (double yaw : {-0.95, -0.8, -0.7, 0.72, 0.79, 0.9})
+    {
+        /* dense sampling misses up to 2 mm at the rim of the disc */
+        for (double ahead_m = 0.5; ahead_m < 1.7; ahead_m += 0.013)
+        {
+            const nav_ground_t ground = placed(scene, yaw);
+            const nav_box_t places = {ahead_m, 0.1, 0.003, 0.002};
+            const nav_interval_t hub = nav_wheel_interval(&ground, &places, &above, RADIUS_M);
+            const double height_m = standing_m(ground, places.u_m, places.v_m);
+            EXPECT_GE(height_m, hub.low_m - 2e-3) << yaw << " " << ahead_m;
+            EXPECT_LE(height_m, hub.high_m + 2e-3) << yaw << " " << ahead_m;
+        }
+    }
+}
+
 TEST(Wheel, places_across_too_many_lines_get_the_heights_of_all_ground_around)
 {
     Scene scene;
