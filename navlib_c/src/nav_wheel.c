@@ -377,16 +377,14 @@ static void take_lines(const track_t *track, const nav_indices_t *majors, profil
 }
 
 /**
- * Raises the highest hub by the ground along one side of the places, from one line to the next. There
- * the surface is a mean of what the two lines hold where the side is: as it moves along them, either
- * rises by no more than its steepest cell. The mean of both, over the way, is a parabola.
+ * How far the ground along one side of the places rises over its chord from one line to the next, at most. There
+ * the surface is a mean of what the two lines hold where the side is: as it moves along them, either rises by no
+ * more than its steepest cell. The mean of both, over the way, is a parabola.
  */
-static void raise_along_side(
-    const track_t *track, const line_t lines[2], double aside, double over_m, double *high_m)
+static double bulge_along_m(const track_t *track, const line_t lines[2], double aside)
 {
     const nav_lanes_t *lanes = &track->ground->lanes;
     const double drift = lanes->minor_per_major;
-    const double aside_u_m = aside * lanes->u_per_minor;
     const int32_t cells[2] = {(int32_t) (lines[0].minor + aside),
                               (int32_t) (lines[1].minor + aside)};
     double gain_m = 0.0;
@@ -396,17 +394,29 @@ static void raise_along_side(
         gain_m += nav_max(toward * rise_from(lanes, &lines[k], cells[0]),
                           toward * rise_from(lanes, &lines[k], cells[1]));
     }
+    return 0.25 * nav_max(gain_m, 0.0) * track->ground->cos_slope;
+}
+
+/** Raises the highest hub by the ground along one side of the places, from one line to the next. */
+static void raise_along_side(const track_t *track,
+                             const line_t lines[2],
+                             double aside,
+                             double bulge_m,
+                             double over_m,
+                             double *high_m)
+{
+    const nav_lanes_t *lanes = &track->ground->lanes;
+    const double aside_u_m = aside * lanes->u_per_minor;
     const stretch_t stretch = {
         touch_at(track, lines[0].u_m + aside_u_m,
                  above_between(lanes, &lines[0], lines[0].minor + aside)),
         touch_at(track, lines[1].u_m + aside_u_m,
                  above_between(lanes, &lines[1], lines[1].minor + aside)),
-        0.25 * nav_max(gain_m, 0.0) * track->ground->cos_slope,
+        bulge_m,
         over_m,
     };
     /* on a slope the bulge stands uphill of its foot */
-    raise_along(track,
-                track->places->half_u_m + (stretch.bulge_m * fabs(track->ground->rise_forward)),
+    raise_along(track, track->places->half_u_m + (bulge_m * fabs(track->ground->rise_forward)),
                 &stretch, high_m);
 }
 
@@ -424,24 +434,28 @@ static double inner_high_m(const track_t *track, const line_t *line)
     return high_m;
 }
 
-/** Does a line have a cell between the sides? */
-static bool has_inner(const track_t *track, const line_t *line)
+/** Is there a cell between the sides, on either line or on the way from one to the other? */
+static bool has_inner(const track_t *track, const line_t lines[2])
 {
-    return (int32_t) (line->minor - track->half_minor) <
-           (int32_t) (line->minor + track->half_minor);
+    const double left = nav_min(lines[0].minor, lines[1].minor) - track->half_minor;
+    const double right = nav_max(lines[0].minor, lines[1].minor) + track->half_minor;
+    return (int32_t) left < (int32_t) right;
 }
 
-/** Raises the highest hub by the cells between the sides, wherever along their lines they are. */
-static void raise_along_inner(const track_t *track, const line_t lines[2], double *high_m)
+/** Raises the highest hub by the cells between the sides, wherever along their lines they are: what leads from
+ * them to a side lies under their chord, raised as much as the sides are. */
+static void raise_along_inner(
+    const track_t *track, const line_t lines[2], double bulge_m, double over_m, double *high_m)
 {
-    if (has_inner(track, &lines[0]) || has_inner(track, &lines[1]))
+    if (has_inner(track, lines))
     {
-        const double half_m = track->places->half_u_m + track->half_u_m;
+        const double half_m = track->places->half_u_m + track->half_u_m +
+                              (bulge_m * fabs(track->ground->rise_forward));
         const stretch_t stretch = {
             touch_at(track, lines[0].u_m, inner_high_m(track, &lines[0])),
             touch_at(track, lines[1].u_m, inner_high_m(track, &lines[1])),
-            0.0,
-            NAV_ETA_NONE,
+            bulge_m,
+            over_m,
         };
         raise_along(track, half_m, &stretch, high_m);
     }
@@ -466,9 +480,12 @@ static void raise_between(const track_t *track,
             nav_max(between_m - (track->places->half_u_m + track->half_u_m + track->uphill_m), 0.0);
         if ((over_m + disc_m(track->radius_m, along_m)) > *high_m)
         {
-            raise_along_side(track, lines, -track->half_minor, over_m, high_m);
-            raise_along_side(track, lines, track->half_minor, over_m, high_m);
-            raise_along_inner(track, lines, high_m);
+            const double half = track->half_minor;
+            const double left_m = bulge_along_m(track, lines, -half);
+            const double right_m = bulge_along_m(track, lines, half);
+            raise_along_side(track, lines, -half, left_m, over_m, high_m);
+            raise_along_side(track, lines, half, right_m, over_m, high_m);
+            raise_along_inner(track, lines, nav_max(left_m, right_m), over_m, high_m);
         }
     }
 }
@@ -496,7 +513,7 @@ typedef struct
     uint32_t first;
     uint32_t last;
     touch_t low[LINES_MAX]; /* of each of them: the lowest ground between the sides */
-} floor_t;
+} near_lines_t;
 
 /** Lowest ground of a line between the sides, and where it is. */
 static touch_t low_of(const track_t *track, const line_t *line)
@@ -513,33 +530,36 @@ static touch_t low_of(const track_t *track, const line_t *line)
 }
 
 /** Takes the lines within a distance of the places, or the nearest one. */
-static void take_floor(const track_t *track, double near_m, floor_t *floor_)
+static void take_near_lines(const track_t *track, double near_m, near_lines_t *near)
 {
-    const profile_t *profile = floor_->profile;
-    floor_->first = profile->count;
-    floor_->last = 0U;
+    const profile_t *profile = near->profile;
+    near->first = profile->count;
+    near->last = 0U;
     for (uint32_t k = 0U; k < profile->count; k++)
     {
         if (fabs(profile->lines[k].u_m) <= near_m)
         {
-            floor_->first = (k < floor_->first) ? k : floor_->first;
-            floor_->last = k;
-            floor_->low[k] = low_of(track, &profile->lines[k]);
+            near->first = (k < near->first) ? k : near->first;
+            near->last = k;
+            near->low[k] = low_of(track, &profile->lines[k]);
         }
     }
 }
 
 /** Lowest ground that a hub within reach_m of u_m can be over: of all stretches from line to line that
  * lie there, leaning as slopes make them. */
-static double under_hub_m(const track_t *track, const floor_t *floor_, double u_m, double reach_m)
+static double under_hub_m(const track_t *track,
+                          const near_lines_t *near,
+                          double u_m,
+                          double reach_m)
 {
-    const profile_t *profile = floor_->profile;
+    const profile_t *profile = near->profile;
     const double lean = fabs(track->ground->forward_up);
     double under_m = NAV_ETA_NONE;
-    for (uint32_t k = floor_->first; k < floor_->last; k++)
+    for (uint32_t k = near->first; k < near->last; k++)
     {
-        const double from_m = floor_->low[k].u_m;
-        const double to_m = floor_->low[k + 1U].u_m;
+        const double from_m = near->low[k].u_m;
+        const double to_m = near->low[k + 1U].u_m;
         const double stretch_m = nav_min(profile->under_m[k], profile->under_m[k + 1U]);
         const double over_m = nav_max(profile->over_m[k], profile->over_m[k + 1U]);
         const double near_m = reach_m + ((over_m - stretch_m) * lean);
@@ -553,14 +573,14 @@ static double under_hub_m(const track_t *track, const floor_t *floor_, double u_
 
 /** Lowest hub over a part of the places around u_m: on whatever line it stands highest at least, and
  * not below the ground under its middle. */
-static double part_low_m(const track_t *track, const floor_t *floor_, double u_m, double half_m)
+static double part_low_m(const track_t *track, const near_lines_t *near, double u_m, double half_m)
 {
     const double reach_m = half_m + track->half_u_m;
     const double radius_m = track->radius_m;
-    double standing_m = under_hub_m(track, floor_, u_m, reach_m) + radius_m;
-    for (uint32_t k = floor_->first; k <= floor_->last; k++)
+    double standing_m = under_hub_m(track, near, u_m, reach_m) + radius_m;
+    for (uint32_t k = near->first; k <= near->last; k++)
     {
-        const touch_t *low = &floor_->low[k];
+        const touch_t *low = &near->low[k];
         const double along_m = fabs(low->u_m - u_m) + reach_m;
         /* no higher than straight above it */
         if ((along_m < radius_m) && ((low->eta_m + radius_m) > standing_m))
@@ -578,14 +598,14 @@ static double hub_low_m(const track_t *track, const profile_t *profile)
     const uint32_t part_count = 1U + (uint32_t) (places->half_u_m / PART_HALF_M);
     const double half_m = places->half_u_m / (double) part_count;
     const double spacing_m = fabs(track->ground->lanes.u_per_major);
-    floor_t floor_ = {.profile = profile};
+    near_lines_t near = {.profile = profile};
     double low_m = NAV_ETA_NONE;
-    take_floor(track, places->half_u_m + track->half_u_m + (2.0 * track->uphill_m) + spacing_m,
-               &floor_);
+    take_near_lines(track, places->half_u_m + track->half_u_m + (2.0 * track->uphill_m) + spacing_m,
+                    &near);
     for (uint32_t part = 0U; part < part_count; part++)
     {
         const double u_m = (half_m * (double) ((2U * part) + 1U)) - places->half_u_m;
-        low_m = nav_min(low_m, part_low_m(track, &floor_, u_m, half_m));
+        low_m = nav_min(low_m, part_low_m(track, &near, u_m, half_m));
     }
     return low_m;
 }
