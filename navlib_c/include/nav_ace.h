@@ -74,9 +74,9 @@ typedef struct
 typedef struct
 {
     nav_ace_view_t view;
-    nav_places_t
-        assumed; /* by an attempt; when those that follow lie inside, these are certified: the map
-                             from places to places then has its fixed point, the settled rover, inside (Brouwer) */
+    /* by an attempt; when those that follow lie inside, these are certified: the map from places to places
+     * then has its fixed point, the settled rover, inside (Brouwer) */
+    nav_places_t assumed;
     nav_ace_look_t looks[NAV_WHEELS]; /* the last at each wheel */
     nav_interval_t heights[NAV_WHEELS];
     nav_places_t places; /* that follow from the heights */

@@ -98,6 +98,20 @@ typedef struct
     int32_t last;
 } nav_indices_t;
 
+/** A stretch of an axis of the grid, in cells, cell centres at whole numbers. */
+typedef struct
+{
+    double low;
+    double high;
+} nav_axis_range_t;
+
+/** A rectangle along the grid. */
+typedef struct
+{
+    nav_axis_range_t rows;
+    nav_axis_range_t cols;
+} nav_upright_t;
+
 /** A box of costmap cells, by row and column. */
 typedef struct
 {
@@ -124,6 +138,9 @@ double nav_ground_eta_m(const nav_ground_t *ground, double foot_u_m, double foot
 
 /** Whole numbers within [low, high]; none where an end is no index. */
 nav_indices_t nav_ground_between(double low, double high);
+
+/** The upright rectangle around a box of feet, in cells of the surface; maybe off the map. */
+nav_upright_t nav_ground_upright(const nav_ground_t *ground, const nav_box_t *box);
 
 /**
  * Costmap cells that hold a heightmap cell in the upright rectangle around a box of feet.

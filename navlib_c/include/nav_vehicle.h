@@ -37,9 +37,8 @@ typedef struct
     double bogie_pivot_height_m;
     double flat_inverse[NAV_LINKAGE_STATES]
                        [NAV_WHEELS]; /* derivatives of the state on flat ground */
-    double
-        forward_per_height[NAV_WHEELS]
-                          [NAV_WHEELS]; /* and of where each hub is, fore and aft, by all heights */
+    /* and of where each hub is, fore and aft, by all heights */
+    double forward_per_height[NAV_WHEELS][NAV_WHEELS];
 } nav_vehicle_t;
 
 /** A state found for six wheel heights, and how the state changes with them. */
@@ -72,6 +71,11 @@ void nav_vehicle_wheel_places(const nav_vehicle_t *vehicle,
                               const double state[NAV_LINKAGE_STATES],
                               double forward_m[NAV_WHEELS],
                               double right_m[NAV_WHEELS]);
+
+/** The state that has such wheel heights, as if it were linear in them: a guess, near flat ground a good one. */
+void nav_vehicle_flat_state(const nav_vehicle_t *vehicle,
+                            const double height_m[NAV_WHEELS],
+                            double state[NAV_LINKAGE_STATES]);
 
 /**
  * The state whose wheel heights are the given ones: at most 10 Newton steps from linkage->state, which

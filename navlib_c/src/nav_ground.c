@@ -143,11 +143,25 @@ nav_indices_t nav_ground_between(double low, double high)
     return between;
 }
 
-/** Costmap rows (or columns) of the surface rows within half of a middle. @return false off the map */
-static bool cost_indices(double middle, double half, int32_t cost_first, nav_indices_t *cells)
+nav_upright_t nav_ground_upright(const nav_ground_t *ground, const nav_box_t *box)
 {
-    const double low = middle - half;
-    const double high = middle + half;
+    const double *f = ground->forward_xy;
+    const double *r = ground->right_xy;
+    const double per_m = ground->cells_per_m;
+    const double row = ground->row + (((f[0] * box->u_m) + (r[0] * box->v_m)) * per_m);
+    const double col = ground->col + (((f[1] * box->u_m) + (r[1] * box->v_m)) * per_m);
+    const double half_row = ((fabs(f[0]) * box->half_u_m) + (fabs(r[0]) * box->half_v_m)) * per_m;
+    const double half_col = ((fabs(f[1]) * box->half_u_m) + (fabs(r[1]) * box->half_v_m)) * per_m;
+    const nav_upright_t upright = {{row - half_row, row + half_row},
+                                   {col - half_col, col + half_col}};
+    return upright;
+}
+
+/** Costmap rows (or columns) of a range of surface rows. @return false off the map */
+static bool cost_indices(const nav_axis_range_t *range, int32_t cost_first, nav_indices_t *cells)
+{
+    const double low = range->low;
+    const double high = range->high;
     bool is_inside = (low >= 0.0) && (high <= (double) (NAV_HEIGHTMAP_SIZE - 1));
     cells->first = 0;
     cells->last = -1;
@@ -167,15 +181,9 @@ static bool cost_indices(double middle, double half, int32_t cost_first, nav_ind
 
 bool nav_ground_cost_box(const nav_ground_t *ground, const nav_box_t *box, nav_cost_box_t *cells)
 {
-    const double *f = ground->forward_xy;
-    const double *r = ground->right_xy;
-    const double per_m = ground->cells_per_m;
-    const double row = ground->row + (((f[0] * box->u_m) + (r[0] * box->v_m)) * per_m);
-    const double col = ground->col + (((f[1] * box->u_m) + (r[1] * box->v_m)) * per_m);
-    const double half_row = ((fabs(f[0]) * box->half_u_m) + (fabs(r[0]) * box->half_v_m)) * per_m;
-    const double half_col = ((fabs(f[1]) * box->half_u_m) + (fabs(r[1]) * box->half_v_m)) * per_m;
-    const bool is_row_inside = cost_indices(row, half_row, ground->cost_row, &cells->rows);
-    const bool is_col_inside = cost_indices(col, half_col, ground->cost_col, &cells->cols);
+    const nav_upright_t upright = nav_ground_upright(ground, box);
+    const bool is_row_inside = cost_indices(&upright.rows, ground->cost_row, &cells->rows);
+    const bool is_col_inside = cost_indices(&upright.cols, ground->cost_col, &cells->cols);
     return is_row_inside && is_col_inside;
 }
 

@@ -97,19 +97,10 @@ static double extent_of(const heights_t *heights, const double per_height[NAV_WH
     return sum;
 }
 
-/** The state as linear functions. */
-static void linear_state(const nav_vehicle_t *vehicle, const heights_t *heights, double state[])
-{
-    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
-    {
-        state[k] = middle_of(heights, vehicle->flat_inverse[k]);
-    }
-}
-
 /** The middle by linear functions: near flat ground. */
 static void place_flat(const nav_vehicle_t *vehicle, const heights_t *heights, middle_t *middle)
 {
-    linear_state(vehicle, heights, middle->state);
+    nav_vehicle_flat_state(vehicle, heights->middle_m, middle->state);
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
     {
         middle->forward_m[wheel] =
@@ -122,7 +113,7 @@ static void place_flat(const nav_vehicle_t *vehicle, const heights_t *heights, m
 static bool place_settled(const nav_vehicle_t *vehicle, const heights_t *heights, middle_t *middle)
 {
     nav_linkage_t linkage;
-    linear_state(vehicle, heights, linkage.state);
+    nav_vehicle_flat_state(vehicle, heights->middle_m, linkage.state);
     const bool is_settled =
         nav_vehicle_settle(vehicle, heights->middle_m, SETTLE_TOLERANCE_M, &linkage);
     for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)

@@ -90,10 +90,10 @@ static float twice_beyond(float distance_m)
 
 /** Rows or columns around a range of places, a batch of them at least. @return false where some are off the
  * map */
-static bool cells_around(double middle, double half, int32_t batch, nav_indices_t *cells)
+static bool cells_around(const nav_axis_range_t *range, int32_t batch, nav_indices_t *cells)
 {
-    const double low = middle - half;
-    const double high = middle + half;
+    const double low = range->low;
+    const double high = range->high;
     const bool is_inside = (low >= 0.0) && (high < (double) (NAV_HEIGHTMAP_SIZE - 1));
     const int32_t first = is_inside ? (int32_t) low : 0;
     const int32_t last = is_inside ? ((int32_t) high + 1) : 0;
@@ -107,15 +107,9 @@ static bool cells_around(double middle, double half, int32_t batch, nav_indices_
 /** @return false where some of them are off the map */
 static bool window_around(const nav_ground_t *ground, const nav_box_t *feet, window_t *window)
 {
-    const double *f = ground->forward_xy;
-    const double *r = ground->right_xy;
-    const double per_m = ground->cells_per_m;
-    const double row = ground->row + (((f[0] * feet->u_m) + (r[0] * feet->v_m)) * per_m);
-    const double col = ground->col + (((f[1] * feet->u_m) + (r[1] * feet->v_m)) * per_m);
-    const double half_row = ((fabs(f[0]) * feet->half_u_m) + (fabs(r[0]) * feet->half_v_m)) * per_m;
-    const double half_col = ((fabs(f[1]) * feet->half_u_m) + (fabs(r[1]) * feet->half_v_m)) * per_m;
-    const bool is_row_inside = cells_around(row, half_row, BATCH_ROWS, &window->rows);
-    const bool is_col_inside = cells_around(col, half_col, BATCH_COLS, &window->cols);
+    const nav_upright_t upright = nav_ground_upright(ground, feet);
+    const bool is_row_inside = cells_around(&upright.rows, BATCH_ROWS, &window->rows);
+    const bool is_col_inside = cells_around(&upright.cols, BATCH_COLS, &window->cols);
     return is_row_inside && is_col_inside;
 }
 

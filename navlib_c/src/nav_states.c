@@ -71,27 +71,13 @@ static void spread_states(const curvature_t *curvature,
     }
 }
 
-/** The state that has such heights, as if it were linear in them. */
-static void guess_state(const nav_vehicle_t *vehicle, nav_spanned_t *spanned)
-{
-    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
-    {
-        double state = 0.0;
-        for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
-        {
-            state += vehicle->flat_inverse[k][wheel] * spanned->wheel_middle_m[wheel];
-        }
-        spanned->linkage.state[k] = state;
-    }
-}
-
 bool nav_states_solve(const nav_vehicle_t *vehicle,
                       const nav_interval_t heights[NAV_WHEELS],
                       nav_spanned_t *spanned)
 {
     double widest_m = 0.0;
     take_heights(heights, spanned);
-    guess_state(vehicle, spanned);
+    nav_vehicle_flat_state(vehicle, spanned->wheel_middle_m, spanned->linkage.state);
     const bool is_solved =
         nav_vehicle_settle(vehicle, spanned->wheel_middle_m, SETTLE_TOLERANCE_M, &spanned->linkage);
     for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
@@ -126,7 +112,7 @@ bool nav_states_flat(const nav_vehicle_t *vehicle,
     if (is_flat)
     {
         take_heights(heights, spanned);
-        guess_state(vehicle, spanned);
+        nav_vehicle_flat_state(vehicle, spanned->wheel_middle_m, spanned->linkage.state);
         for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
         {
             for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)

@@ -339,6 +339,20 @@ void nav_vehicle_init(const nav_params_t *params, nav_vehicle_t *vehicle)
     }
 }
 
+void nav_vehicle_flat_state(const nav_vehicle_t *vehicle,
+                            const double height_m[NAV_WHEELS],
+                            double state[NAV_LINKAGE_STATES])
+{
+    for (uint32_t k = 0U; k < (uint32_t) NAV_LINKAGE_STATES; k++)
+    {
+        state[k] = 0.0;
+        for (uint32_t wheel = 0U; wheel < (uint32_t) NAV_WHEELS; wheel++)
+        {
+            state[k] += vehicle->flat_inverse[k][wheel] * height_m[wheel];
+        }
+    }
+}
+
 /** Moves the state by what is missing of the wheel heights. */
 static void move_state(const double missing_m[NAV_WHEELS], nav_linkage_t *linkage)
 {

@@ -319,6 +319,24 @@ static double above_between(const nav_lanes_t *lanes, const line_t *line, double
     return above_at(lanes, line, cell) + ((minor - (double) cell) * rise_from(lanes, line, cell));
 }
 
+/** Between which heights above the plane the ground of a line lies from side to side of the places. */
+static nav_interval_t between_sides(const track_t *track, const line_t *line)
+{
+    const nav_lanes_t *lanes = &track->ground->lanes;
+    const double left = line->minor - track->half_minor;
+    const double right = line->minor + track->half_minor;
+    const double left_m = above_between(lanes, line, left);
+    const double right_m = above_between(lanes, line, right);
+    nav_interval_t above = {nav_min(left_m, right_m), nav_max(left_m, right_m)};
+    for (int32_t cell = (int32_t) left + 1; cell <= (int32_t) right; cell++)
+    {
+        const double above_m = above_at(lanes, line, cell);
+        above.low_m = nav_min(above.low_m, above_m);
+        above.high_m = nav_max(above.high_m, above_m);
+    }
+    return above;
+}
+
 /** Adds a line to the profile. @return false when some of it is unknown or off the map */
 static bool add_line(const track_t *track, const line_t *line, profile_t *profile)
 {
@@ -420,20 +438,6 @@ static void raise_along_side(const track_t *track,
                 &stretch, high_m);
 }
 
-/** The highest ground of a line between the sides of the places. */
-static double inner_high_m(const track_t *track, const line_t *line)
-{
-    const nav_lanes_t *lanes = &track->ground->lanes;
-    const double left = line->minor - track->half_minor;
-    const double right = line->minor + track->half_minor;
-    double high_m = nav_max(above_between(lanes, line, left), above_between(lanes, line, right));
-    for (int32_t cell = (int32_t) left + 1; cell <= (int32_t) right; cell++)
-    {
-        high_m = nav_max(high_m, above_at(lanes, line, cell));
-    }
-    return high_m;
-}
-
 /** Is there a cell between the sides, on either line or on the way from one to the other? */
 static bool has_inner(const track_t *track, const line_t lines[2])
 {
@@ -452,8 +456,8 @@ static void raise_along_inner(
         const double half_m = track->places->half_u_m + track->half_u_m +
                               (bulge_m * fabs(track->ground->rise_forward));
         const stretch_t stretch = {
-            touch_at(track, lines[0].u_m, inner_high_m(track, &lines[0])),
-            touch_at(track, lines[1].u_m, inner_high_m(track, &lines[1])),
+            touch_at(track, lines[0].u_m, between_sides(track, &lines[0]).high_m),
+            touch_at(track, lines[1].u_m, between_sides(track, &lines[1]).high_m),
             bulge_m,
             over_m,
         };
@@ -515,21 +519,7 @@ typedef struct
     touch_t low[LINES_MAX]; /* of each of them: the lowest ground between the sides */
 } near_lines_t;
 
-/** Lowest ground of a line between the sides, and where it is. */
-static touch_t low_of(const track_t *track, const line_t *line)
-{
-    const nav_lanes_t *lanes = &track->ground->lanes;
-    const double left = line->minor - track->half_minor;
-    const double right = line->minor + track->half_minor;
-    double low_m = nav_min(above_between(lanes, line, left), above_between(lanes, line, right));
-    for (int32_t cell = (int32_t) left + 1; cell <= (int32_t) right; cell++)
-    {
-        low_m = nav_min(low_m, above_at(lanes, line, cell));
-    }
-    return touch_at(track, line->u_m, low_m);
-}
-
-/** Takes the lines within a distance of the places, or the nearest one. */
+/** Takes the lines within a distance of the middle of the places, maybe none. */
 static void take_near_lines(const track_t *track, double near_m, near_lines_t *near)
 {
     const profile_t *profile = near->profile;
@@ -541,7 +531,8 @@ static void take_near_lines(const track_t *track, double near_m, near_lines_t *n
         {
             near->first = (k < near->first) ? k : near->first;
             near->last = k;
-            near->low[k] = low_of(track, &profile->lines[k]);
+            near->low[k] = touch_at(track, profile->lines[k].u_m,
+                                    between_sides(track, &profile->lines[k]).low_m);
         }
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstring>
 
+#include "nav_rover.hpp"
 #include "nav_scene.hpp"
 
 extern "C"
@@ -26,10 +27,7 @@ nav_ground_t placed(const Scene &scene, double yaw_rad, double x_m = 0.25, doubl
 /// A state without spread: level on the plane, or with some numbers changed.
 nav_spanned_t standing(double height_m = 0.0, double roll_rad = 0.0, double pitch_rad = 0.0)
 {
-    nav_params_t params;
-    nav_vehicle_t vehicle;
-    nav_params_default(&params);
-    nav_vehicle_init(&params, &vehicle);
+    const nav_vehicle_t vehicle = vehicle_of();
     nav_spanned_t spanned = {};
     spanned.linkage.state[NAV_LINKAGE_HEIGHT] = height_m;
     spanned.linkage.state[NAV_LINKAGE_ROLL] = roll_rad;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "nav_rover.hpp"
 #include "nav_scene.hpp"
 
 extern "C"
@@ -14,15 +15,6 @@ namespace
 {
 
 constexpr nav_uncertainty_t CERTAIN = {0.0, 0.0, 0.0};
-
-nav_vehicle_t vehicle()
-{
-    nav_params_t params;
-    nav_vehicle_t vehicle;
-    nav_params_default(&params);
-    nav_vehicle_init(&params, &vehicle);
-    return vehicle;
-}
 
 /// The frame on a plane that rises by so much per metre forward and right.
 nav_ground_t ground_of(Scene &scene, double rise_forward, double rise_right)
@@ -46,7 +38,7 @@ nav_places_t places_of(const nav_ground_t &ground,
                        const std::array<nav_interval_t, NAV_WHEELS> &heights,
                        const nav_uncertainty_t &uncertainty = CERTAIN)
 {
-    const nav_vehicle_t rover = vehicle();
+    const nav_vehicle_t rover = vehicle_of();
     nav_places_t places;
     nav_places_find(&ground, &rover, &uncertainty, heights.data(), &places);
     return places;
@@ -55,7 +47,7 @@ nav_places_t places_of(const nav_ground_t &ground,
 TEST(Places, on_the_plane_the_wheels_are_where_they_are_mounted)
 {
     Scene scene;
-    const nav_vehicle_t rover = vehicle();
+    const nav_vehicle_t rover = vehicle_of();
     const nav_places_t places = places_of(ground_of(scene, 0.0, 0.0), all_at(0.0, 0.0));
     EXPECT_TRUE(places.is_bounded);
     for (int wheel = 0; wheel < NAV_WHEELS; wheel++)
@@ -70,7 +62,7 @@ TEST(Places, on_the_plane_the_wheels_are_where_they_are_mounted)
 TEST(Places, raising_all_wheels_moves_them_up_the_slope_alone)
 {
     Scene scene;
-    const nav_vehicle_t rover = vehicle();
+    const nav_vehicle_t rover = vehicle_of();
     const nav_places_t places = places_of(ground_of(scene, 0.2, -0.1), all_at(0.1, 0.1));
     for (int wheel = 0; wheel < NAV_WHEELS; wheel++)
     {
@@ -83,7 +75,7 @@ TEST(Places, hold_where_the_wheels_are_for_all_heights_within_the_intervals)
 {
     Scene scene;
     const nav_ground_t ground = ground_of(scene, 0.0, 0.0);
-    const nav_vehicle_t rover = vehicle();
+    const nav_vehicle_t rover = vehicle_of();
     std::mt19937 random(5);
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     for (int trial = 0; trial < 4000; trial++)
@@ -142,7 +134,7 @@ TEST(Places, uncertainty_widens_them_and_yaw_those_far_from_the_middle_more)
 TEST(Places, a_wheel_that_leans_touches_beside_its_lowest_point)
 {
     Scene scene;
-    const nav_vehicle_t rover = vehicle();
+    const nav_vehicle_t rover = vehicle_of();
     std::array<nav_interval_t, NAV_WHEELS> heights = all_at(0.0, 0.0);
     for (int wheel = 0; wheel < NAV_WHEELS / 2; wheel++)
     {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <random>
 
+#include "nav_rover.hpp"
 #include "nav_scene.hpp"
 
 extern "C"
@@ -13,15 +14,6 @@ namespace
 {
 
 constexpr double SOLVED_M = 1e-10;
-
-nav_vehicle_t vehicle()
-{
-    nav_params_t params;
-    nav_vehicle_t vehicle;
-    nav_params_default(&params);
-    nav_vehicle_init(&params, &vehicle);
-    return vehicle;
-}
 
 struct Heights
 {
@@ -70,7 +62,7 @@ void expect_inside(const nav_linkage_t &linkage, const nav_spanned_t &spanned)
 TEST(States, solved_hold_every_state_of_heights_within_the_intervals)
 {
     std::mt19937 random(11);
-    const nav_vehicle_t rover = vehicle();
+    const nav_vehicle_t rover = vehicle_of();
     for (int trial = 0; trial < 2000; trial++)
     {
         const Heights heights = random_heights(random, 0.0, 0.3);
@@ -86,7 +78,7 @@ TEST(States, solved_hold_every_state_of_heights_within_the_intervals)
 TEST(States, as_on_flat_ground_they_hold_them_too)
 {
     std::mt19937 random(12);
-    const nav_vehicle_t rover = vehicle();
+    const nav_vehicle_t rover = vehicle_of();
     for (double common_m : {-0.25, 0.0, 0.25})
     {
         for (int trial = 0; trial < 2000; trial++)
@@ -104,7 +96,7 @@ TEST(States, as_on_flat_ground_they_hold_them_too)
 
 TEST(States, heights_too_different_for_flat_ground_are_told)
 {
-    const nav_vehicle_t rover = vehicle();
+    const nav_vehicle_t rover = vehicle_of();
     Heights heights = {};
     heights.wheels[1] = {-0.05, 0.0};
     heights.wheels[4] = {0.1, 0.16};
@@ -116,7 +108,7 @@ TEST(States, heights_too_different_for_flat_ground_are_told)
 
 TEST(States, heights_no_linkage_can_take_have_none)
 {
-    const nav_vehicle_t rover = vehicle();
+    const nav_vehicle_t rover = vehicle_of();
     Heights heights = {};
     heights.wheels[1] = {3.0, 3.0};
     heights.wheels[4] = {-3.0, -3.0};

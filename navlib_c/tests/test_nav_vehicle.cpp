@@ -2,28 +2,11 @@
 #include <cmath>
 #include <random>
 
+#include "nav_rover.hpp"
 #include "nav_scene.hpp"
-
-extern "C"
-{
-#include "nav_vehicle.h"
-}
 
 namespace
 {
-
-nav_vehicle_t vehicle_of(const std::function<void(nav_params_t &)> &change = {})
-{
-    nav_params_t params;
-    nav_params_default(&params);
-    if (change)
-    {
-        change(params);
-    }
-    nav_vehicle_t vehicle;
-    nav_vehicle_init(&params, &vehicle);
-    return vehicle;
-}
 
 constexpr double TOLERANCE_M = 1e-10;
 
